@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Basic types, version and forward declarations. Includes nothing but the standard integer, size
+ * and bool headers. All quantities are SI. */
+#ifndef BRC_BRC_H
+#define BRC_BRC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define BRC_VERSION "0.1.0"
+#define BRC_PI 3.14159265358979323846
+
+struct brc_context;  /* errors, log, ranks: error.h */
+struct brc_params;   /* list of parameters: params.h */
+struct brc_table;    /* arrays declared by a field list: fields.h */
+struct brc_facets;   /* tessellation result: facets.h */
+struct brc_specimen; /* grains' geometry before any model: specimen.h */
+struct brc_contacts; /* contact arrays: contacts.h */
+struct brc_model;    /* operations table of a contact model: model.h */
+struct brc_sim;      /* one running simulation: sim.h */
+
+#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fields.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 64 };
+
+size_t brc_type_size(enum brc_type type)
+{
+    switch (type) {
+    case BRC_F64:
+    case BRC_I64:
+        return 8;
+    case BRC_I32:
+        return 4;
+    case BRC_U8:
+        return 1;
+    }
+    return 0;
+}
+
+size_t brc_field_size(const struct brc_field *f)
+{
+    return brc_type_size(f->type) * (size_t)f->width;
+}
+
+static void **column_slot(const struct brc_table *t, int field)
+{
+    return (void **)((char *)t->columns + t->set.fields[field].offset);
+}
+
+void *brc_table_column(const struct brc_table *t, int field)
+{
+    return *column_slot(t, field);
+}
+
+void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset set, void *columns)
+{
+    *t = (struct brc_table){.name = name, .set = set, .columns = columns};
+}
+
+static void *aligned_block(struct brc_context *ctx, size_t rows, size_t row_size)
+{
+    size_t bytes = (rows * row_size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    void *block = aligned_alloc(ALIGNMENT, bytes > 0 ? bytes : ALIGNMENT);
+    if (!block)
+        brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
+                      "out of memory: %zu rows of %zu bytes; use fewer grains or a larger machine",
+                      rows, row_size);
+    return block;
+}
+
+/* Allocates new columns of cap rows, filled by from (see brc_table_gather) or by the old rows in
+ * order when from is NULL; either all columns change or none. */
+static int replace_columns(struct brc_context *ctx, struct brc_table *t, const size_t *from,
+                           size_t n, size_t cap)
+{
+    void **fresh = brc_alloc(ctx, (size_t)t->set.n, sizeof *fresh);
+    if (!fresh)
+        return BRC_ERR_MEMORY;
+    for (int i = 0; i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        fresh[i] = aligned_block(ctx, cap, size);
+        if (!fresh[i]) {
+            for (int j = 0; j < i; j++)
+                free(fresh[j]);
+            free(fresh);
+            return BRC_ERR_MEMORY;
+        }
+        char *to = fresh[i];
+        const char *old = brc_table_column(t, i);
+        size_t kept = t->n < n ? t->n : n;
+        if (!from && kept > 0)
+            memcpy(to, old, kept * size);
+        if (!from)
+            memset(to + kept * size, 0, (cap - kept) * size);
+        for (size_t row = 0; from && row < n; row++) {
+            if (from[row] == BRC_NEW_ROW)
+                memset(to + row * size, 0, size);
+            else
+                memcpy(to + row * size, old + from[row] * size, size);
+        }
+    }
+    for (int i = 0; i < t->set.n; i++) {
+        free(brc_table_column(t, i));
+        *column_slot(t, i) = fresh[i];
+    }
+    free(fresh);
+    t->n = n;
+    t->cap = cap;
+    return 0;
+}
+
+int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
+{
+    if (n > t->cap) {
+        size_t cap = t->cap > 0 ? t->cap : 16;
+        while (cap < n)
+            cap *= 2;
+        return replace_columns(ctx, t, NULL, n, cap);
+    }
+    for (int i = 0; n > t->n && i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        memset((char *)brc_table_column(t, i) + t->n * size, 0, (n - t->n) * size);
+    }
+    t->n = n;
+    return 0;
+}
+
+int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t *from, size_t n)
+{
+    return replace_columns(ctx, t, from, n, n > t->cap ? n + n / 2 : t->cap);
+}
+
+void brc_table_free(struct brc_table *t)
+{
+    for (int i = 0; i < t->set.n; i++) {
+        free(brc_table_column(t, i));
+        *column_slot(t, i) = NULL;
+    }
+    t->n = t->cap = 0;
+}
+
+uint64_t brc_hash_bytes(const void *data, size_t n, uint64_t seed)
+{
+    const unsigned char *bytes = data;
+    uint64_t hash = seed;
+    size_t i = 0;
+    for (; i + 8 <= n; i += 8) {
+        uint64_t word;
+        memcpy(&word, bytes + i, 8);
+        hash = (hash ^ word) * UINT64_C(0x100000001b3);
+        hash ^= hash >> 29; /* FNV alone never moves high bits down */
+    }
+    for (; i < n; i++)
+        hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+uint64_t brc_table_hash(const struct brc_table *t, uint64_t seed)
+{
+    uint64_t hash = brc_hash_bytes(&t->n, sizeof t->n, seed);
+    for (int i = 0; i < t->set.n; i++)
+        if (t->set.fields[i].flags & BRC_STATE)
+            hash = brc_hash_bytes(brc_table_column(t, i), t->n * brc_field_size(&t->set.fields[i]),
+                                  hash);
+    return hash;
+}

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameter lists: each case-file section (specimen, test, run, output, and one per model) is
+ * declared once as an X-macro; the struct, the reader, the range checks and the reference printed by
+ * `breccia params` all come from it.
+ *
+ *     #define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                        \
+ *         REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "contact modulus E-bar, eq 28")          \
+ *         CHOICE(interaction, "all|gap|area", "gap", "which facets are contacts")
+ *     struct vgcm_params { BRC_PARAM_MEMBERS(VGCM_PARAMS) };
+ *     #define BRC_OWNER struct vgcm_params
+ *     static const struct brc_param vgcm_param_list[] = { BRC_PARAM_LIST(VGCM_PARAMS) };
+ *     #undef BRC_OWNER
+ */
+#ifndef BRC_PARAMS_H
+#define BRC_PARAMS_H
+
+#include "error.h"
+
+enum brc_param_kind {
+    BRC_REAL,   /* double, SI */
+    BRC_INT,    /* int */
+    BRC_CHOICE, /* int: position in the |-separated list of choices */
+    BRC_FLAG,   /* int: on = 1, off = 0 */
+    BRC_TEXT,   /* char[BRC_TEXT_SIZE] */
+    BRC_REAL3,  /* double[3], SI */
+    BRC_INT3    /* int[3] */
+};
+enum { BRC_TEXT_SIZE = 256 };
+
+struct brc_param {
+    const char *key;
+    enum brc_param_kind kind;
+    const char *unit;          /* SI unit as UDUNITS-2 reads it; "1" for a pure number */
+    const char *default_text;  /* as written in a case file; NULL: must be given */
+    const char *range;         /* interval in SI units, "(0, inf)", "[0, 1]"; NULL: any */
+    const char *choices;       /* CHOICE only */
+    const char *meaning;
+    size_t offset;
+};
+
+struct brc_param_list {
+    const struct brc_param *params;
+    int n;
+    size_t owner_size;
+};
+#define BRC_PARAMS(list, owner)                                                                    \
+    {                                                                                              \
+        (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner)                               \
+    }
+
+#define BRC_PARAM_M_REAL(name, unit, def, range, meaning)  double name;
+#define BRC_PARAM_M_INT(name, def, range, meaning)         int name;
+#define BRC_PARAM_M_CHOICE(name, choices, def, meaning)    int name;
+#define BRC_PARAM_M_FLAG(name, def, meaning)               int name;
+#define BRC_PARAM_M_TEXT(name, def, meaning)               char name[BRC_TEXT_SIZE];
+#define BRC_PARAM_M_REAL3(name, unit, def, range, meaning) double name[3];
+#define BRC_PARAM_M_INT3(name, def, range, meaning)        int name[3];
+#define BRC_PARAM_MEMBERS(LIST)                                                                    \
+    LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_CHOICE, BRC_PARAM_M_FLAG,                  \
+         BRC_PARAM_M_TEXT, BRC_PARAM_M_REAL3, BRC_PARAM_M_INT3)
+
+#define BRC_PARAM_L_REAL(name, unit, def, range, meaning)                                          \
+    {#name, BRC_REAL, unit, def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_L_INT(name, def, range, meaning)                                                 \
+    {#name, BRC_INT, "1", def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_L_CHOICE(name, choices, def, meaning)                                            \
+    {#name, BRC_CHOICE, "1", def, NULL, choices, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_L_FLAG(name, def, meaning)                                                       \
+    {#name, BRC_FLAG, "1", def, NULL, "off|on", meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_L_TEXT(name, def, meaning)                                                       \
+    {#name, BRC_TEXT, "1", def, NULL, NULL, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_L_REAL3(name, unit, def, range, meaning)                                         \
+    {#name, BRC_REAL3, unit, def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_L_INT3(name, def, range, meaning)                                                \
+    {#name, BRC_INT3, "1", def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_LIST(LIST)                                                                       \
+    LIST(BRC_PARAM_L_REAL, BRC_PARAM_L_INT, BRC_PARAM_L_CHOICE, BRC_PARAM_L_FLAG,                  \
+         BRC_PARAM_L_TEXT, BRC_PARAM_L_REAL3, BRC_PARAM_L_INT3)
+
+/* Fills a parameter struct with the defaults; keys without a default are left zero. */
+int brc_params_defaults(struct brc_context *ctx, struct brc_param_list list, void *values);
+/* Sets one key from text ("48.8 GPa"); where names the place for the message ("file.yaml:12"). */
+int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
+                   const char *section, const char *key, const char *text, const char *where);
+/* Text of a value, in the unit of its default where it has one; returns buffer. */
+const char *brc_params_text(const struct brc_param *p, const void *values, char *buffer,
+                            size_t size);
+/* Name of the present choice of a CHOICE or FLAG. */
+const char *brc_params_choice(const struct brc_param *p, const void *values, char *buffer,
+                              size_t size);
+/* Value of a quantity text ("48.8 GPa") in the SI unit given. */
+int brc_params_quantity(struct brc_context *ctx, const char *text, const char *unit, double *value,
+                        const char *where);
+/* The param of this key, NULL when there is none; the nearest key by edit distance. */
+const struct brc_param *brc_params_find(struct brc_param_list list, const char *key);
+const char *brc_params_nearest(struct brc_param_list list, const char *key);
+
+#endif
