@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #define BRC_VERSION "0.1.0"
-#define BRC_PI 3.14159265358979323846
+#define BRC_PI      3.14159265358979323846
 
 struct brc_context;  /* errors, log, ranks: error.h */
 struct brc_params;   /* list of parameters: params.h */

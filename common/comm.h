@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ranks: start, end and reductions. No MPI name appears here; comm_mpi.c is the only file with mpi.h.
- * One process without mpirun is the common case. */
+/* Ranks: start, end and reductions. No MPI name appears here; comm_mpi.c is the only file with
+ * mpi.h. One process without mpirun is the common case. */
 #ifndef BRC_COMM_H
 #define BRC_COMM_H
 

@@ -32,13 +32,14 @@ int brc_convex_copy(struct brc_context *ctx, struct brc_convex *to, const struct
 /* Axis-parallel box; face ids 0..5 = -x +x -y +y -z +z. */
 int brc_convex_box(struct brc_context *ctx, struct brc_convex *c, const double low[3],
                    const double high[3]);
-/* Intersection of half-spaces inside a bounding box of the given half-width about centre; the planes'
- * ids are kept; an unbounded result is an error. Empty results have n_faces = 0. */
+/* Intersection of half-spaces inside a bounding box of the given half-width about centre; the
+ * planes' ids are kept; an unbounded result is an error. Empty results have n_faces = 0. */
 int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
                            const struct brc_plane *planes, size_t n, const double centre[3],
                            double half_width);
 /* Keeps the part inside the half-space. Vertices within tolerance of the plane count as on it, so
- * that no face or edge shorter than about tolerance arises. Sets *changed when something was cut. */
+ * that no face or edge shorter than about tolerance arises. Sets *changed when something was cut.
+ */
 int brc_convex_clip(struct brc_context *ctx, struct brc_convex *c, const struct brc_plane *plane,
                     double tolerance, bool *changed);
 /* Largest distance from a point to a vertex. */

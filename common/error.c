@@ -23,8 +23,8 @@ int brc_error_set(struct brc_context *ctx, int code, const char *file, int line,
 const char *brc_error_text(int code)
 {
     switch (code) {
-#define BRC_ERROR_TEXT(name, value, status, text)                                                  \
-    case name:                                                                                     \
+#define BRC_ERROR_TEXT(name, value, status, text) \
+    case name:                                    \
         return text;
         BRC_ERRORS(BRC_ERROR_TEXT)
     default:
@@ -35,8 +35,8 @@ const char *brc_error_text(int code)
 int brc_error_exit_status(int code)
 {
     switch (code) {
-#define BRC_ERROR_STATUS(name, value, status, text)                                                \
-    case name:                                                                                     \
+#define BRC_ERROR_STATUS(name, value, status, text) \
+    case name:                                      \
         return status;
         BRC_ERRORS(BRC_ERROR_STATUS)
     default:

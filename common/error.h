@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One list of error codes with texts and exit statuses; the context that records the first failure.
- * Every function that can fail returns int: 0 on success, a negative code of this list otherwise. */
+ * Every function that can fail returns int: 0 on success, a negative code of this list otherwise.
+ */
 #ifndef BRC_ERROR_H
 #define BRC_ERROR_H
 
 #include "brc.h"
 
 /* name, code, exit status of the program, text */
-#define BRC_ERRORS(X)                                                                              \
-    X(BRC_OK, 0, 0, "success")                                                                     \
-    X(BRC_ERR_INTERNAL, -1, 1, "internal error")                                                   \
-    X(BRC_ERR_USAGE, -2, 2, "bad command line")                                                    \
-    X(BRC_ERR_INPUT, -3, 3, "bad input")                                                           \
-    X(BRC_ERR_GEOMETRY, -4, 3, "impossible geometry")                                              \
-    X(BRC_ERR_IO, -5, 4, "input or output failed")                                                 \
-    X(BRC_ERR_MEMORY, -6, 5, "out of memory")                                                      \
-    X(BRC_ERR_BLOWUP, -7, 6, "the simulation became unstable")                                     \
+#define BRC_ERRORS(X)                                          \
+    X(BRC_OK, 0, 0, "success")                                 \
+    X(BRC_ERR_INTERNAL, -1, 1, "internal error")               \
+    X(BRC_ERR_USAGE, -2, 2, "bad command line")                \
+    X(BRC_ERR_INPUT, -3, 3, "bad input")                       \
+    X(BRC_ERR_GEOMETRY, -4, 3, "impossible geometry")          \
+    X(BRC_ERR_IO, -5, 4, "input or output failed")             \
+    X(BRC_ERR_MEMORY, -6, 5, "out of memory")                  \
+    X(BRC_ERR_BLOWUP, -7, 6, "the simulation became unstable") \
     X(BRC_ERR_INTERRUPTED, -8, 7, "interrupted")
 
 enum brc_error_code {
@@ -26,16 +27,17 @@ enum brc_error_code {
 
 /* The context of a run. Created by the caller with BRC_CONTEXT_INIT; outlives everything else. */
 struct brc_context {
-    int code;          /* first failure, 0 when none */
-    char message[1024]; /* what went wrong and what to do, one line, without file and line of source */
-    const char *file;  /* source place of the failure, for developers */
+    int code;           /* first failure, 0 when none */
+    char message[1024]; /* what went wrong and what to do, one line, without file and line of source
+                         */
+    const char *file;   /* source place of the failure, for developers */
     int line;
-    int quiet;         /* 1: no log lines */
+    int quiet; /* 1: no log lines */
 };
 
-#define BRC_CONTEXT_INIT                                                                           \
-    {                                                                                              \
-        0, "", NULL, 0, 0                                                                          \
+#define BRC_CONTEXT_INIT  \
+    {                     \
+        0, "", NULL, 0, 0 \
     }
 
 /* Records the first failure (later ones are dropped) and returns code. */
@@ -48,13 +50,14 @@ int brc_error_exit_status(int code);
 void brc_error_clear(struct brc_context *ctx);
 
 /* Returns from the calling function with a recorded error. */
-#define BRC_FAIL(ctx, code, ...) return brc_error_set((ctx), (code), __FILE__, __LINE__, __VA_ARGS__)
+#define BRC_FAIL(ctx, code, ...) \
+    return brc_error_set((ctx), (code), __FILE__, __LINE__, __VA_ARGS__)
 /* Propagates a failure. */
-#define BRC_TRY(call)                                                                              \
-    do {                                                                                           \
-        int brc_try_code = (call);                                                                 \
-        if (brc_try_code != 0)                                                                     \
-            return brc_try_code;                                                                   \
+#define BRC_TRY(call)              \
+    do {                           \
+        int brc_try_code = (call); \
+        if (brc_try_code != 0)     \
+            return brc_try_code;   \
     } while (0)
 
 /* calloc that records BRC_ERR_MEMORY; returns NULL on failure. count 0 gives a valid pointer. */

@@ -9,32 +9,32 @@
 struct brc_facets {
     /* cells, numbered along a space-filling order */
     size_t n_cells;
-    double *volume;         /* [n_cells] m3 */
-    double (*centre)[3];    /* [n_cells] m, centroid of the cell */
-    double (*seed)[3];      /* [n_cells] m, Voronoi seed or centre of the sphere */
-    double *radius;         /* [n_cells] m, sphere radius (Laguerre weight r^2); 0 for plain Voronoi */
-    size_t *cell_first;     /* [n_cells + 1] */
-    int32_t *cell_facet;    /* facets of a cell, ascending */
+    double *volume;      /* [n_cells] m3 */
+    double (*centre)[3]; /* [n_cells] m, centroid of the cell */
+    double (*seed)[3];   /* [n_cells] m, Voronoi seed or centre of the sphere */
+    double *radius;      /* [n_cells] m, sphere radius (Laguerre weight r^2); 0 for plain Voronoi */
+    size_t *cell_first;  /* [n_cells + 1] */
+    int32_t *cell_facet; /* facets of a cell, ascending */
     /* facets, sorted by (low cell, high cell), boundary facets of a cell after its inner ones */
     size_t n_facets;
-    int32_t (*cell)[2];     /* [n_facets] low and high cell; [1] = -1 on the boundary */
-    int32_t *face;          /* [n_facets] domain plane id on the boundary, -1 inside */
-    double *area;           /* [n_facets] m2 */
-    double (*centroid)[3];  /* [n_facets] m */
-    double (*normal)[3];    /* [n_facets] unit, out of cell[0] */
-    size_t *first;          /* [n_facets + 1] range in loop */
-    int32_t *loop;          /* vertex ids, counter-clockwise seen against the normal's tip */
+    int32_t (*cell)[2];    /* [n_facets] low and high cell; [1] = -1 on the boundary */
+    int32_t *face;         /* [n_facets] domain plane id on the boundary, -1 inside */
+    double *area;          /* [n_facets] m2 */
+    double (*centroid)[3]; /* [n_facets] m */
+    double (*normal)[3];   /* [n_facets] unit, out of cell[0] */
+    size_t *first;         /* [n_facets + 1] range in loop */
+    int32_t *loop;         /* vertex ids, counter-clockwise seen against the normal's tip */
     /* vertices, shared by all facets and cells that meet there */
     size_t n_vertices;
-    double (*vertex)[3];    /* [n_vertices] m */
-    double area_dropped;    /* m2, total area of facets below the area limit */
+    double (*vertex)[3]; /* [n_vertices] m */
+    double area_dropped; /* m2, total area of facets below the area limit */
 };
 
 void brc_facets_free(struct brc_facets *f);
 /* Largest |volume sum / domain volume - 1|, |sum A n| / sum A over a cell: the closure check. */
 struct brc_facets_quality {
-    double volume_error;   /* relative */
-    double closure_error;  /* largest over the cells, relative to the cell's area */
+    double volume_error;  /* relative */
+    double closure_error; /* largest over the cells, relative to the cell's area */
     double smallest_volume, smallest_area;
 };
 void brc_facets_check(const struct brc_facets *f, double domain_volume,

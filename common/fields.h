@@ -29,22 +29,22 @@ enum brc_field_flags {
 struct brc_field {
     const char *name;
     enum brc_type type;
-    int width;           /* values a row */
+    int width; /* values a row */
     unsigned flags;
     const char *unit;
     const char *meaning;
     size_t offset; /* of the column pointer in the owner struct */
 };
 
-#define BRC_TYPE_OF(type)                                                                          \
+#define BRC_TYPE_OF(type) \
     _Generic((type)0, double : BRC_F64, int32_t : BRC_I32, uint8_t : BRC_U8, int64_t : BRC_I64)
 /* struct members: a column of scalars, a column of rows of n values */
 #define BRC_COLUMN(type, name, flags, unit, meaning)     type *name;
-#define BRC_COLUMN3(type, name, n, flags, unit, meaning) type (*name)[n];
+#define BRC_COLUMN3(type, name, n, flags, unit, meaning) type(*name)[n];
 /* descriptors; BRC_OWNER must name the struct while they are expanded */
-#define BRC_FIELD(type, name, flags, unit, meaning)                                                \
+#define BRC_FIELD(type, name, flags, unit, meaning) \
     {#name, BRC_TYPE_OF(type), 1, flags, unit, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_FIELD3(type, name, n, flags, unit, meaning)                                            \
+#define BRC_FIELD3(type, name, n, flags, unit, meaning) \
     {#name, BRC_TYPE_OF(type), n, flags, unit, meaning, offsetof(BRC_OWNER, name)},
 
 /* A field list with the size of its owner struct; all zero for "no fields". */
@@ -53,22 +53,22 @@ struct brc_fieldset {
     int n;
     size_t owner_size;
 };
-#define BRC_FIELDSET(list, owner)                                                                  \
-    {                                                                                              \
-        (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner)                               \
+#define BRC_FIELDSET(list, owner)                                    \
+    {                                                                \
+        (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner) \
     }
 
 struct brc_table {
-    const char *name;        /* group name in output files */
+    const char *name; /* group name in output files */
     struct brc_fieldset set;
-    void *columns;           /* the owner struct: column pointers at the fields' offsets */
-    size_t n, cap;           /* rows in use, rows allocated */
+    void *columns; /* the owner struct: column pointers at the fields' offsets */
+    size_t n, cap; /* rows in use, rows allocated */
 };
 
 /* Binds a table to a caller-owned struct of column pointers (all NULL). */
 void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset set, void *columns);
-/* Sets the row count; new rows are zero; capacity grows by doubling. Columns are 64-byte aligned and
- * may move. */
+/* Sets the row count; new rows are zero; capacity grows by doubling. Columns are 64-byte aligned
+ * and may move. */
 int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n);
 #define BRC_NEW_ROW ((size_t)-1)
 /* Row i becomes the old row from[i]; BRC_NEW_ROW gives a zero row. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameter lists: each case-file section (specimen, test, run, output, and one per model) is
- * declared once as an X-macro; the struct, the reader, the range checks and the reference printed by
- * `breccia params` all come from it.
+ * declared once as an X-macro; the struct, the reader, the range checks and the reference printed
+ * by `breccia params` all come from it.
  *
  *     #define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                        \
  *         REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "contact modulus E-bar, eq 28")          \
@@ -30,10 +30,10 @@ enum { BRC_TEXT_SIZE = 256 };
 struct brc_param {
     const char *key;
     enum brc_param_kind kind;
-    const char *unit;          /* SI unit as UDUNITS-2 reads it; "1" for a pure number */
-    const char *default_text;  /* as written in a case file; NULL: must be given */
-    const char *range;         /* interval in SI units, "(0, inf)", "[0, 1]"; NULL: any */
-    const char *choices;       /* CHOICE only */
+    const char *unit;         /* SI unit as UDUNITS-2 reads it; "1" for a pure number */
+    const char *default_text; /* as written in a case file; NULL: must be given */
+    const char *range;        /* interval in SI units, "(0, inf)", "[0, 1]"; NULL: any */
+    const char *choices;      /* CHOICE only */
     const char *meaning;
     size_t offset;
 };
@@ -43,9 +43,9 @@ struct brc_param_list {
     int n;
     size_t owner_size;
 };
-#define BRC_PARAMS(list, owner)                                                                    \
-    {                                                                                              \
-        (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner)                               \
+#define BRC_PARAMS(list, owner)                                      \
+    {                                                                \
+        (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner) \
     }
 
 #define BRC_PARAM_M_REAL(name, unit, def, range, meaning)  double name;
@@ -55,26 +55,26 @@ struct brc_param_list {
 #define BRC_PARAM_M_TEXT(name, def, meaning)               char name[BRC_TEXT_SIZE];
 #define BRC_PARAM_M_REAL3(name, unit, def, range, meaning) double name[3];
 #define BRC_PARAM_M_INT3(name, def, range, meaning)        int name[3];
-#define BRC_PARAM_MEMBERS(LIST)                                                                    \
-    LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_CHOICE, BRC_PARAM_M_FLAG,                  \
+#define BRC_PARAM_MEMBERS(LIST)                                                   \
+    LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_CHOICE, BRC_PARAM_M_FLAG, \
          BRC_PARAM_M_TEXT, BRC_PARAM_M_REAL3, BRC_PARAM_M_INT3)
 
-#define BRC_PARAM_L_REAL(name, unit, def, range, meaning)                                          \
+#define BRC_PARAM_L_REAL(name, unit, def, range, meaning) \
     {#name, BRC_REAL, unit, def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_INT(name, def, range, meaning)                                                 \
+#define BRC_PARAM_L_INT(name, def, range, meaning) \
     {#name, BRC_INT, "1", def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_CHOICE(name, choices, def, meaning)                                            \
+#define BRC_PARAM_L_CHOICE(name, choices, def, meaning) \
     {#name, BRC_CHOICE, "1", def, NULL, choices, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_FLAG(name, def, meaning)                                                       \
+#define BRC_PARAM_L_FLAG(name, def, meaning) \
     {#name, BRC_FLAG, "1", def, NULL, "off|on", meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_TEXT(name, def, meaning)                                                       \
+#define BRC_PARAM_L_TEXT(name, def, meaning) \
     {#name, BRC_TEXT, "1", def, NULL, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_REAL3(name, unit, def, range, meaning)                                         \
+#define BRC_PARAM_L_REAL3(name, unit, def, range, meaning) \
     {#name, BRC_REAL3, unit, def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_INT3(name, def, range, meaning)                                                \
+#define BRC_PARAM_L_INT3(name, def, range, meaning) \
     {#name, BRC_INT3, "1", def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_LIST(LIST)                                                                       \
-    LIST(BRC_PARAM_L_REAL, BRC_PARAM_L_INT, BRC_PARAM_L_CHOICE, BRC_PARAM_L_FLAG,                  \
+#define BRC_PARAM_LIST(LIST)                                                      \
+    LIST(BRC_PARAM_L_REAL, BRC_PARAM_L_INT, BRC_PARAM_L_CHOICE, BRC_PARAM_L_FLAG, \
          BRC_PARAM_L_TEXT, BRC_PARAM_L_REAL3, BRC_PARAM_L_INT3)
 
 /* Fills a parameter struct with the defaults; keys without a default are left zero. */

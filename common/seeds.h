@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Seed points and sphere sizes (GSL random numbers): gt12's jittered grid and vgcm's growth packing. */
+/* Seed points and sphere sizes (GSL random numbers): gt12's jittered grid and vgcm's growth
+ * packing. */
 #ifndef BRC_SEEDS_H
 #define BRC_SEEDS_H
 
@@ -7,8 +8,8 @@
 
 struct brc_seeds {
     size_t n;
-    double (*x)[3];  /* m */
-    double *radius;  /* m; NULL for plain Voronoi */
+    double (*x)[3]; /* m */
+    double *radius; /* m; NULL for plain Voronoi */
 };
 
 void brc_seeds_free(struct brc_seeds *s);

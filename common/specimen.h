@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A specimen: domain, seeds and tessellation, before any contact model. One specimen serves both
- * models. The axis of cylinders and of compression and tension is z; the Brazilian load is along y. */
+ * models. The axis of cylinders and of compression and tension is z; the Brazilian load is along y.
+ */
 #ifndef BRC_SPECIMEN_H
 #define BRC_SPECIMEN_H
 
@@ -39,11 +40,11 @@ extern const struct brc_param_list brc_specimen_param_list;
 
 struct brc_specimen {
     struct brc_specimen_params params;
-    struct brc_convex domain;    /* face ids: box -x +x -y +y -z +z = 0..5; cylinder 0 bottom, 1 top,
-                                    2 + k side k with its normal at 90 deg + k 360/sides */
-    double domain_volume;        /* m3 */
+    struct brc_convex domain; /* face ids: box -x +x -y +y -z +z = 0..5; cylinder 0 bottom, 1 top,
+                                 2 + k side k with its normal at 90 deg + k 360/sides */
+    double domain_volume;     /* m3 */
     struct brc_facets facets;
-    double solid_fraction;       /* spheres / domain; 0 for plain Voronoi */
+    double solid_fraction;        /* spheres / domain; 0 for plain Voronoi */
     double mean_contact_distance; /* m, mean centre distance over the inner facets */
 };
 

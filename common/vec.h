@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* 3-vectors and quaternions (scalar first, body to space). Static inline, no state. Output arguments
- * come first and may alias inputs unless said otherwise. */
+/* 3-vectors and quaternions (scalar first, body to space). Static inline, no state. Output
+ * arguments come first and may alias inputs unless said otherwise. */
 #ifndef BRC_VEC_H
 #define BRC_VEC_H
 

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Test rigs: platens, loading, and the measures of stress and strain. docs/measures.md says how
+ * each value is measured. Compression is positive in all reports. */
+#ifndef BRC_RIG_H
+#define BRC_RIG_H
+
+#include "params.h"
+
+enum brc_test { BRC_TEST_COMPRESSION, BRC_TEST_TENSION, BRC_TEST_BRAZILIAN };
+enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
+enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
+
+#define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                \
+    CHOICE(kind, "compression|tension|brazilian", "compression",                                   \
+           "compression and tension along z, Brazilian along y")                                   \
+    CHOICE(loading, "adaptive|fixed", "adaptive",                                                  \
+           "adaptive: the rate follows the unbalanced force; fixed: at rate")                      \
+    REAL(rate, "1/s", "2e-7 1/s", "(0, inf)",                                                      \
+         "fixed loading, and start of adaptive: strain rate; in the quasi-static regime one step " \
+         "is one second")                                                                          \
+    REAL(target, "1", "0.01", "(0, 1)", "adaptive: unbalanced-force ratio to hold")                \
+    REAL(rate_max, "1/s", "1e-5 1/s", "(0, inf)", "adaptive: largest strain rate")                 \
+    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain")                \
+    REAL(stop_drop, "1", "0.5", "[0, 1)",                                                          \
+         "the test ends when the load has fallen to this part of "                                 \
+         "its peak; 0: never")                                                                     \
+    REAL(friction, "1", "0", "[0, 10]", "friction coefficient of the platens")                     \
+    CHOICE(grip, "axial|full", "axial",                                                            \
+           "tension: platens hold only the axial motion of the end grains, or all of it")          \
+    REAL(gauge, "1", "0.6", "(0, 1]", "middle part of the specimen where strain is measured")      \
+    REAL(plate_width, "m", "0 m", "[0, inf)", "Brazilian: width of the plates; 0: unlimited")      \
+    REAL(modulus_low, "1", "0.1", "[0, 1)", "moduli: least squares from this part of the peak")    \
+    REAL(modulus_high, "1", "0.5", "(0, 1]", "moduli: up to this part of the peak")                \
+    INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")
+
+struct brc_test_params {
+    BRC_PARAM_MEMBERS(BRC_TEST_PARAMS)
+};
+extern const struct brc_param_list brc_test_param_list;
+
+/* A rigid plane. Its body moves; n is fixed. Points count only within half_width of the body's x
+ * along the direction `across` (infinite: HUGE_VAL). */
+struct brc_platen {
+    int32_t body;
+    double n[3];      /* unit, into the specimen */
+    double across[3]; /* unit, in the plane */
+    double half_width;
+    double friction;
+    enum brc_grip grip; /* BRC_GRIP_NONE: contact only; else the end facets are held, unbreakable */
+    double direction;   /* +1: moves along +n for a positive strain rate; -1 against */
+    double boundary_work; /* J, work done on the specimen */
+    double force_old[3];
+};
+
+enum { BRC_MAX_PLATENS = 6 };
+
+/* One row of the curve. */
+#define BRC_CURVE_FIELDS(SCALAR, VECTOR)                                                           \
+    SCALAR(int64_t, step, BRC_STATE, "1", "step")                                                  \
+    SCALAR(double, time, BRC_STATE, "s", "time (steps in the quasi-static regime)")                \
+    SCALAR(double, strain, BRC_STATE, "1", "platen strain, in the sense of the test")              \
+    SCALAR(double, stress, BRC_STATE, "Pa", "stress, in the sense of the test (Brazilian: eq 16)") \
+    SCALAR(double, force, BRC_STATE, "N", "mean platen force")                                     \
+    SCALAR(double, strain_axial, BRC_STATE, "1", "gauge strain along the load, compression +")     \
+    SCALAR(double, strain_lateral, BRC_STATE, "1", "gauge strain across the load, compression +")  \
+    SCALAR(double, rate, BRC_STATE, "s-1", "strain rate")                                          \
+    SCALAR(double, unbalanced, BRC_STATE, "1", "unbalanced-force ratio")                           \
+    SCALAR(double, kinetic_ratio, BRC_STATE, "1", "kinetic / stored energy")                       \
+    SCALAR(double, residual, BRC_STATE, "1", "energy residual")                                    \
+    SCALAR(int64_t, broken, BRC_STATE, "1", "events so far")
+
+#endif

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One running simulation: what a step reads and writes. */
+#ifndef BRC_SIM_H
+#define BRC_SIM_H
+
+#include "bodies.h"
+#include "contacts.h"
+#include "events.h"
+#include "ledger.h"
+#include "model.h"
+#include "rig.h"
+#include "specimen.h"
+
+enum brc_regime { BRC_DYNAMIC, BRC_QUASI_STATIC };
+enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
+
+#define BRC_RUN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                               \
+    CHOICE(                                                                                      \
+        regime, "dynamic|quasi_static", "quasi_static",                                          \
+        "dynamic: true mass, viscous contact damping; quasi_static: scaled mass, step 1, local " \
+        "damping")                                                                               \
+    REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error") \
+    REAL(dt_margin, "1", "0.8", "(0, 1)", "dynamic, automatic: part of the stable limit")        \
+    REAL(mass_margin, "1", "1.2", "[1, 100]", "quasi_static: factor on the scaled masses")       \
+    REAL(local_damping, "1", "0.7", "[0, 1)", "quasi_static: local non-viscous damping alpha")   \
+    CHOICE(damping, "cartesian|along_velocity", "cartesian",                                     \
+           "local damping per Cartesian component as printed, or along the velocity")            \
+    REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")            \
+    FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")               \
+    REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                   \
+    INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")          \
+    INT(checkpoint_steps, "20000", "[0, 2000000000]",                                            \
+        "steps between saved states; 0: at the end only")
+
+struct brc_run_params {
+    BRC_PARAM_MEMBERS(BRC_RUN_PARAMS)
+};
+extern const struct brc_param_list brc_run_param_list;
+
+struct brc_rig {
+    struct brc_test_params params;
+    int n_platens;
+    struct brc_platen platen[BRC_MAX_PLATENS];
+    int axis;            /* of the load: 2 = z, 1 = y */
+    double length;       /* m, distance of the platens at the start */
+    double section;      /* m2, area that force is divided by */
+    double rate, strain; /* 1/s; 1 */
+    double force;        /* N, mean platen force in the sense of the test */
+    double force_peak, strain_peak;
+    double unbalanced, unbalanced_max, kinetic_ratio;
+    int64_t peak_step;
+    struct brc_curve {
+        BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+        struct brc_table table;
+    } curve;
+};
+
+struct brc_sim {
+    struct brc_context *ctx;
+    struct brc_model model; /* complete: every operation is set */
+    void *params;           /* the model's parameter struct; owned */
+    void *state;            /* the model's private memory */
+    const struct brc_specimen *specimen;
+    struct brc_run_params run;
+    struct brc_bodies bodies;
+    struct brc_contacts pairs, platens;
+    struct brc_events events;
+    struct brc_ledger ledger;
+    struct brc_rig rig;
+    int64_t step;
+    double time, dt;
+    double dt_limit;       /* last estimate, s */
+    double skin;           /* m */
+    double damping_alpha;  /* local damping in use: 0 in the dynamic regime */
+    double *travel_listed; /* bodies' travel when candidates were last listed */
+    int64_t n_listings;
+    int64_t k_seen[2]; /* k_version of pairs and platens at the last mass scaling */
+};
+
+/* Builds bodies, platens, contacts and the first forces. params is the model's filled parameter
+ * struct (copied); specimen must outlive the simulation. Nothing is left behind on failure. */
+int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
+                   const void *params, const struct brc_specimen *specimen,
+                   const struct brc_test_params *test, const struct brc_run_params *run);
+void brc_sim_free(struct brc_sim *sim);
+/* One step: kick, drift, candidates, forces, gather, loading, ledger. */
+int brc_sim_step(struct brc_sim *sim);
+/* 64-bit hash over bodies, contacts, points, rig and ledger. */
+uint64_t brc_sim_hash(const struct brc_sim *sim);
+
+/* Platen of a body number (a platen body). */
+static inline const struct brc_platen *brc_sim_platen(const struct brc_sim *sim, int32_t body)
+{
+    return &sim->rig.platen[(size_t)body - sim->bodies.n_grains];
+}
+
+#endif
