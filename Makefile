@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# breccia: `make help` lists the targets. Sources are found by pattern; a folder with a model.c is a
+# contact model. CFG=release|debug|san picks the configuration; release builds into build/.
+
+CFG   ?= release
+BUILD := build$(if $(filter release,$(CFG)),,/$(CFG))
+JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
+
+.DEFAULT_GOAL := all
+.SUFFIXES:
+.DELETE_ON_ERROR:
+.SECONDARY:
+MAKEFLAGS += --no-builtin-rules -j$(JOBS) -Otarget
+
+# --- sources ---------------------------------------------------------------------------------------
+MODELS       := $(filter-out common calib tests cases docs results,$(patsubst %/model.c,%,$(sort $(wildcard */model.c))))
+LIB_SOURCES  := $(sort $(filter-out common/main.c,$(wildcard common/*.c common/*.cpp calib/*.c $(addsuffix /*.c,$(MODELS)))))
+TEST_FOLDERS := $(foreach d,unit model converge determinism golden,tests/$d)
+TEST_SOURCES := $(sort $(wildcard $(addsuffix /test_*.c,$(TEST_FOLDERS))))
+TEST_SCRIPTS := $(sort $(wildcard $(addsuffix /test_*.sh,$(TEST_FOLDERS))))
+# whatever tests share, the null model included; linked in as far as a test asks for it
+AID_SOURCES  := $(sort $(filter-out $(TEST_SOURCES),$(wildcard tests/*.c tests/null/*.c $(addsuffix /*.c,$(TEST_FOLDERS)))))
+BENCH_SOURCES := $(sort $(wildcard tests/bench/*.c))
+MAIN_SOURCES := $(wildcard common/main.c)
+
+objects = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$1))
+LIB_OBJECTS   := $(call objects,$(LIB_SOURCES))
+AID_OBJECTS   := $(call objects,$(AID_SOURCES))
+TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SOURCES))
+BENCH_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(BENCH_SOURCES))
+PROGRAM       := $(if $(MAIN_SOURCES),$(BUILD)/breccia)
+
+# --- flags -----------------------------------------------------------------------------------------
+# build/deps.mk is made by .ci/deps, which first installs what is missing; make reads it again then.
+ifneq ($(filter-out clean help deps,$(or $(MAKECMDGOALS),all)),)
+include build/deps.mk
+endif
+build/deps.mk: .ci/deps
+	@.ci/deps build $@
+
+CC       := gcc
+CXX      := g++
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wpointer-arith -Wcast-qual -Wundef -Wformat=2 \
+            -Wwrite-strings -Wduplicated-cond -Wlogical-op -Wnull-dereference -Werror
+WARNINGS_C := -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+WARNINGS_CXX := -Wmissing-declarations
+FLAGS_release := -O2 -g
+FLAGS_debug   := -O0 -g -DBRC_DEBUG
+FLAGS_san     := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer -fsanitize=address,undefined \
+                 -fno-sanitize-recover=all
+ifeq ($(FLAGS_$(CFG)),)
+$(error CFG=$(CFG) is unknown; known are release, debug and san)
+endif
+COMMON_FLAGS = $(FLAGS_$(CFG)) -fPIC -fno-semantic-interposition -ffp-contract=off -fno-math-errno \
+               -D_POSIX_C_SOURCE=200809L -I. -I$(BUILD) $(DEPS_CFLAGS) $(WARNINGS)
+CFLAGS_ALL   = -std=c17 $(COMMON_FLAGS) $(WARNINGS_C) $(CFLAGS)
+CXXFLAGS_ALL = -std=c++17 $(COMMON_FLAGS) $(WARNINGS_CXX) -frounding-math $(CXXFLAGS)
+LINK_FLAGS   = $(FLAGS_$(CFG)) $(LDFLAGS)
+
+# --- building --------------------------------------------------------------------------------------
+.PHONY: all debug san library tests
+all: library $(PROGRAM) ## build/breccia and build/libbreccia.a
+debug san: ## the same with assertions, or with the address and undefined-behaviour sanitizers
+	@+$(MAKE) --no-print-directory CFG=$@ all
+library: $(BUILD)/libbreccia.a
+tests: $(TEST_PROGRAMS)
+
+# files whose content is a fact; written only when the fact changes
+define write_fact
+@mkdir -p $(@D); printf '%s\n' $1 >$@.new; if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+endef
+.PHONY: FORCE
+FORCE:
+$(BUILD)/registry_list.h: FORCE
+	$(call write_fact,'/* made by make from the folders with a model.c */' $(patsubst %,'BRC_MODEL(brc_model_%)',$(MODELS)))
+$(BUILD)/flags: FORCE
+	$(call write_fact,'$(CC) $(CXX) $(CFLAGS_ALL) $(CXXFLAGS_ALL) $(LINK_FLAGS)')
+$(BUILD)/sources: FORCE
+	$(call write_fact,$(LIB_SOURCES) $(AID_SOURCES))
+
+$(BUILD)/obj/%.c.o: %.c $(BUILD)/flags | $(BUILD)/registry_list.h
+	@mkdir -p $(@D)
+	@echo "cc   $<"
+	@$(CC) $(CFLAGS_ALL) -MMD -MP -c $< -o $@
+$(BUILD)/obj/%.cpp.o: %.cpp $(BUILD)/flags
+	@mkdir -p $(@D)
+	@echo "c++  $<"
+	@$(CXX) $(CXXFLAGS_ALL) -MMD -MP -c $< -o $@
+$(BUILD)/obj/common/registry.c.o: $(BUILD)/registry_list.h
+
+$(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
+	@echo "ar   $@"
+	@rm -f $@; ar rcs $@ $(LIB_OBJECTS)
+$(BUILD)/libaid.a: $(AID_OBJECTS) $(BUILD)/sources
+	@rm -f $@; ar rcs $@ $(AID_OBJECTS)
+$(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(BUILD)/libbreccia.a
+	@echo "link $@"
+	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) -o $@
+$(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(BUILD)/libaid.a $(BUILD)/libbreccia.a
+	@mkdir -p $(@D)
+	@echo "link $@"
+	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) -lcmocka -o $@
+
+-include $(patsubst %.o,%.d,$(LIB_OBJECTS) $(AID_OBJECTS) $(call objects,$(MAIN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES)))
+
+# --- checking --------------------------------------------------------------------------------------
+.PHONY: check check-san clean help deps
+check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
+	@BRECCIA=$(BUILD)/breccia BUILD=$(BUILD) JOBS=$(JOBS) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
+check-san: ## all tests under the sanitizers
+	@+$(MAKE) --no-print-directory CFG=san check
+
+deps: ## install what is missing (Debian, Ubuntu)
+	@.ci/deps build build/deps.mk
+clean: ## remove build/
+	rm -rf build
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z][a-z -]*:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
