@@ -99,13 +99,13 @@ static inline void brc_quat_matrix(double m[3][3], const double q[4])
 }
 
 /* r = m a (body to space); r must not alias a. */
-static inline void brc_mat_mul(double r[3], const double m[3][3], const double a[3])
+static inline void brc_mat_mul(double r[3], double m[3][3], const double a[3])
 {
     brc_set(r, brc_dot(m[0], a), brc_dot(m[1], a), brc_dot(m[2], a));
 }
 
 /* r = m^T a (space to body); r must not alias a. */
-static inline void brc_mat_mul_t(double r[3], const double m[3][3], const double a[3])
+static inline void brc_mat_mul_t(double r[3], double m[3][3], const double a[3])
 {
     brc_set(r, m[0][0] * a[0] + m[1][0] * a[1] + m[2][0] * a[2],
             m[0][1] * a[0] + m[1][1] * a[1] + m[2][1] * a[2],
