@@ -14,7 +14,8 @@ struct brc_plane {
 };
 
 /* A convex polyhedron: faces are vertex loops, counter-clockwise seen from outside. All memory is
- * owned and grows as needed, so one object can be reused for many cells. */
+ * owned and grows as needed, so one object can be reused for many cells. After a failure it
+ * holds no valid body, but can be filled anew or freed. */
 struct brc_convex {
     size_t n_vertices, cap_vertices;
     double (*vertex)[3];
@@ -49,7 +50,7 @@ double brc_convex_reach(const struct brc_convex *c, const double from[3]);
 void brc_convex_mass(const struct brc_convex *c, double *volume, double centroid[3],
                      double inertia[3][3]);
 /* Area and centroid of a plane polygon given by its vertices in order; normal is a unit vector. */
-double brc_polygon_area(const double (*vertex)[3], const int32_t *loop, size_t n,
-                        const double normal[3], double centroid[3]);
+double brc_polygon_area(double (*vertex)[3], const int32_t *loop, size_t n, const double normal[3],
+                        double centroid[3]);
 
 #endif

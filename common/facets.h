@@ -19,6 +19,8 @@ struct brc_facets {
     size_t n_facets;
     int32_t (*cell)[2];    /* [n_facets] low and high cell; [1] = -1 on the boundary */
     int32_t *face;         /* [n_facets] domain plane id on the boundary, -1 inside */
+    uint8_t *is_contact;   /* [n_facets] 0: inner facet below the area limit, which closes its cells
+                              but carries no contact; 1: every other facet */
     double *area;          /* [n_facets] m2 */
     double (*centroid)[3]; /* [n_facets] m */
     double (*normal)[3];   /* [n_facets] unit, out of cell[0] */
@@ -27,7 +29,7 @@ struct brc_facets {
     /* vertices, shared by all facets and cells that meet there */
     size_t n_vertices;
     double (*vertex)[3]; /* [n_vertices] m */
-    double area_dropped; /* m2, total area of facets below the area limit */
+    double area_dropped; /* m2, total area of the facets that are no contacts */
 };
 
 void brc_facets_free(struct brc_facets *f);

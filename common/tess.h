@@ -10,11 +10,11 @@
 /* Cells of the seeds in a convex domain. radius NULL: plain Voronoi; else Laguerre with weights
  * r^2. Seeds must lie in the domain. A seed without a cell (hidden, or coincident seeds) is an
  * error that names it, unless hidden != NULL: then hidden[i] tells and the facets are not made.
- * Facets below min_area_ratio times the mean area are dropped from the list (their area is logged
- * in area_dropped), the cells stay closed in volume. */
-int brc_tess_laguerre(struct brc_context *ctx, const double (*seed)[3], const double *radius,
-                      size_t n, const struct brc_convex *domain, double min_area_ratio,
-                      uint8_t *hidden, struct brc_facets *out);
+ * Inner facets below min_area_ratio times the mean area stay in the list, so that cells are closed,
+ * but is_contact is 0 for them and area_dropped has their total area. */
+int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
+                      const struct brc_convex *domain, double min_area_ratio, uint8_t *hidden,
+                      struct brc_facets *out);
 
 /* gt12's Brazilian disc: regular polygon of n_sides and circumradius radius in the x-y plane, with
  * a side's normal along +y, meshed by Delaunay triangles of at most max_area, extruded from z = 0
