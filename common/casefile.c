@@ -1,0 +1,666 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "casefile.h"
+
+#include <yaml.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BRC_OWNER struct brc_case_params
+static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASE_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_case_param_list = BRC_PARAMS(case_params, struct brc_case_params);
+
+enum { WHERE_SIZE = 256 };
+
+/* A mapping that is open while the file is read. */
+struct level {
+    char key[BRC_CASE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
+    int line;                    /* of that key */
+};
+
+struct reader {
+    struct brc_context *ctx;
+    struct brc_case *c;
+    struct level level[BRC_CASE_MAX_LEVELS];
+    int depth;        /* open mappings */
+    bool is_sequence; /* inside [...] */
+    char *sequence;   /* its texts so far, joined by commas */
+    bool is_done;     /* the document has ended */
+};
+
+/* "file.yaml:12", or "--set" for the command line. */
+static const char *make_where(const struct brc_case *c, int line, bool is_override,
+                              char where[WHERE_SIZE])
+{
+    if (is_override)
+        snprintf(where, WHERE_SIZE, "--set");
+    else if (line > 0)
+        snprintf(where, WHERE_SIZE, "%.200s:%d", c->path, line);
+    else
+        snprintf(where, WHERE_SIZE, "%.200s", c->path);
+    return where;
+}
+
+/* ---- bytes --------------------------------------------------------------------------------- */
+
+/* Bytes of the UTF-8 character at s, 0 for an invalid or a control character. */
+static size_t utf8_length(const unsigned char *s, size_t left)
+{
+    static const uint32_t lowest[] = {0, 0, 0x80, 0x800, 0x10000};
+    size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc0 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
+    if (n == 0 || n > left || s[0] > 0xf4)
+        return 0;
+    uint32_t code = n == 1 ? s[0] : s[0] & (0xffu >> (n + 1));
+    for (size_t i = 1; i < n; i++) {
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+        code = code << 6 | (s[i] & 0x3f);
+    }
+    bool is_control = (code < 0x20 && code != '\t' && code != '\n' && code != '\r') ||
+                      (code >= 0x7f && code < 0xa0);
+    bool is_surrogate = code >= 0xd800 && code < 0xe000;
+    bool is_mark = code == 0xfeff || code >= 0x110000; /* byte order mark, too large */
+    return code < lowest[n] || is_control || is_surrogate || is_mark ? 0 : n;
+}
+
+static int check_bytes(struct brc_context *ctx, const char *path, const char *text, size_t size)
+{
+    int line = 1;
+    if (size > BRC_CASE_MAX_BYTES)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: the case file is larger than %d bytes", path,
+                 BRC_CASE_MAX_BYTES);
+    for (size_t i = 0; i < size;) {
+        size_t n = utf8_length((const unsigned char *)text + i, size - i);
+        if (n == 0)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s:%d: byte 0x%02x starts no valid UTF-8 text or is a control character; "
+                     "save the file as plain UTF-8 without byte order mark",
+                     path, line, (unsigned char)text[i]);
+        line += text[i] == '\n';
+        i += n;
+    }
+    return 0;
+}
+
+/* ---- building the list --------------------------------------------------------------------- */
+
+static int check_name(struct brc_context *ctx, const char *name, size_t n, const char *where)
+{
+    if (n == 0 || n >= BRC_CASE_KEY_SIZE || memchr(name, '.', n) || memchr(name, '\0', n))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: '%.60s' is not a key; a key has 1 to %d characters and no dot", where, name,
+                 BRC_CASE_KEY_SIZE - 1);
+    return 0;
+}
+
+static const struct brc_case_place *find_section(const struct brc_case *c, const char *name)
+{
+    for (size_t i = 0; i < c->n_sections; i++)
+        if (strcmp(c->sections[i].name, name) == 0)
+            return &c->sections[i];
+    return NULL;
+}
+
+static int add_section(struct brc_context *ctx, struct brc_case *c, const char *name, int line)
+{
+    const struct brc_case_place *old = find_section(c, name);
+    if (old && old->line > 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s:%d: %s: given twice, first in line %d; keep one of the two", c->path, line,
+                 name, old->line);
+    if (c->n_sections == c->cap_sections) {
+        size_t cap = c->cap_sections ? 2 * c->cap_sections : 8;
+        void *block = brc_realloc(ctx, c->sections, cap, sizeof *c->sections);
+        if (!block)
+            return BRC_ERR_MEMORY;
+        c->sections = block;
+        c->cap_sections = cap;
+    }
+    struct brc_case_place *s = &c->sections[c->n_sections++];
+    snprintf(s->name, sizeof s->name, "%s", name);
+    s->line = line;
+    return 0;
+}
+
+static int check_entry(struct brc_context *ctx, const struct brc_case *c,
+                       const struct brc_case_entry *e, const char *where)
+{
+    if (c->n == BRC_CASE_MAX_ENTRIES)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: more than %d keys in one case", where,
+                 BRC_CASE_MAX_ENTRIES);
+    for (size_t i = 0; i < c->n && !e->is_override; i++)
+        if (strcmp(c->entries[i].section, e->section) == 0 &&
+            strcmp(c->entries[i].key, e->key) == 0)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s: %s%s%s: given twice, first in line %d; keep one of the two", where,
+                     e->section, *e->section ? "." : "", e->key, c->entries[i].line);
+    return 0;
+}
+
+static int grow_entries(struct brc_context *ctx, struct brc_case *c)
+{
+    size_t cap = c->cap ? 2 * c->cap : 32;
+    if (c->n < c->cap)
+        return 0;
+    void *block = brc_realloc(ctx, c->entries, cap, sizeof *c->entries);
+    if (!block)
+        return BRC_ERR_MEMORY;
+    c->entries = block;
+    c->cap = cap;
+    return 0;
+}
+
+/* Adds section.key, or section.parent_key where parent is not NULL, with a copy of text. */
+static int add_entry(struct brc_context *ctx, struct brc_case *c, const char *const name[3],
+                     const char *text, int line)
+{
+    struct brc_case_entry e = {.line = line, .is_override = line == 0};
+    char where[WHERE_SIZE];
+    const char *parent = name[1], *key = name[2];
+    make_where(c, line, e.is_override, where);
+    snprintf(e.section, sizeof e.section, "%s", name[0]);
+    int n = snprintf(e.key, sizeof e.key, "%s%s%s", parent, *parent ? "_" : "", key);
+    if (n >= (int)sizeof e.key)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: the key %s.%s.%s is longer than %d characters", where,
+                 name[0], parent, key, BRC_CASE_KEY_SIZE - 1);
+    if (strcmp(key, "rule") == 0)
+        snprintf(e.parent, sizeof e.parent, "%s", parent);
+    BRC_TRY(check_entry(ctx, c, &e, where));
+    BRC_TRY(grow_entries(ctx, c));
+    e.text = brc_alloc(ctx, strlen(text) + 1, 1);
+    if (!e.text)
+        return BRC_ERR_MEMORY;
+    strcpy(e.text, text);
+    c->entries[c->n++] = e;
+    return 0;
+}
+
+/* ---- YAML events --------------------------------------------------------------------------- */
+
+static int fail_at(struct reader *r, int line, const char *what)
+{
+    BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: %s", r->c->path, line, what);
+}
+
+/* The key whose value comes now: an entry at the level it belongs to. */
+static int take_value(struct reader *r, const char *text, int line)
+{
+    struct level *top = &r->level[r->depth - 1];
+    const char *name[3] = {r->depth > 1 ? r->level[0].key : "", r->depth > 2 ? r->level[1].key : "",
+                           top->key};
+    int code = add_entry(r->ctx, r->c, name, text, line);
+    top->key[0] = '\0';
+    return code;
+}
+
+static int take_sequence_item(struct reader *r, const char *text)
+{
+    size_t old = strlen(r->sequence), n = strlen(text);
+    char *longer = brc_realloc(r->ctx, r->sequence, old + n + 3, 1);
+    if (!longer)
+        return BRC_ERR_MEMORY;
+    r->sequence = longer;
+    strcat(strcat(longer, old ? ", " : ""), text);
+    return 0;
+}
+
+static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
+{
+    const char *text = (const char *)event->data.scalar.value;
+    size_t n = event->data.scalar.length;
+    bool is_plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+    if (r->depth == 0)
+        return fail_at(r, line, "a case file is a mapping, `key: value`; this is a lone value");
+    struct level *top = &r->level[r->depth - 1];
+    for (size_t i = 0; i < n; i++)
+        if ((unsigned char)text[i] < 0x20)
+            return fail_at(r, line, "a value must be one line without control characters");
+    if (r->is_sequence)
+        return take_sequence_item(r, text);
+    if (top->key[0] == '\0') {
+        char where[WHERE_SIZE];
+        BRC_TRY(check_name(r->ctx, text, n, make_where(r->c, line, false, where)));
+        snprintf(top->key, sizeof top->key, "%s", text);
+        top->line = line;
+        return 0;
+    }
+    if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0)) {
+        if (r->depth > 1 || brc_params_find(brc_case_param_list, top->key))
+            BRC_FAIL(r->ctx, BRC_ERR_INPUT,
+                     "%s:%d: %s: has no value; write one or leave the key out", r->c->path,
+                     top->line, top->key);
+        int code = add_section(r->ctx, r->c, top->key, top->line);
+        top->key[0] = '\0';
+        return code;
+    }
+    return take_value(r, text, top->line);
+}
+
+static int open_mapping(struct reader *r, int line)
+{
+    char name[2 * BRC_CASE_KEY_SIZE];
+    if (r->is_sequence)
+        return fail_at(r, line, "a sequence holds plain values, no mappings");
+    if (r->depth > 0 && r->level[r->depth - 1].key[0] == '\0')
+        return fail_at(r, line, "a key must be a plain word");
+    if (r->depth == BRC_CASE_MAX_LEVELS)
+        return fail_at(r, line, "mappings are nested deeper than 3 levels; join keys as a_b");
+    if (r->depth > 0) {
+        snprintf(name, sizeof name, "%s%s%s", r->level[0].key, r->depth > 1 ? "." : "",
+                 r->depth > 1 ? r->level[1].key : "");
+        BRC_TRY(add_section(r->ctx, r->c, name, r->level[r->depth - 1].line));
+    }
+    r->level[r->depth].key[0] = '\0';
+    r->depth++;
+    return 0;
+}
+
+static int close_mapping(struct reader *r)
+{
+    r->depth--;
+    if (r->depth > 0)
+        r->level[r->depth - 1].key[0] = '\0';
+    return 0;
+}
+
+static int open_sequence(struct reader *r, int line)
+{
+    if (r->depth == 0)
+        return fail_at(r, line, "a case file is a mapping, `key: value`; this is a sequence");
+    if (r->is_sequence || r->level[r->depth - 1].key[0] == '\0')
+        return fail_at(r, line, "a sequence must be the value of a key and hold plain values");
+    r->is_sequence = true;
+    r->sequence = brc_alloc(r->ctx, 1, 1);
+    return r->sequence ? 0 : BRC_ERR_MEMORY;
+}
+
+static int close_sequence(struct reader *r)
+{
+    int code = take_value(r, r->sequence, r->level[r->depth - 1].line);
+    free(r->sequence);
+    r->sequence = NULL;
+    r->is_sequence = false;
+    return code;
+}
+
+/* Anchors, aliases and tags are YAML's way to programs; a case file is data. */
+static int refuse_extras(struct reader *r, const yaml_event_t *event, int line)
+{
+    const yaml_char_t *anchor = NULL, *tag = NULL;
+    if (event->type == YAML_SCALAR_EVENT) {
+        anchor = event->data.scalar.anchor;
+        tag = event->data.scalar.tag;
+    } else if (event->type == YAML_MAPPING_START_EVENT) {
+        anchor = event->data.mapping_start.anchor;
+        tag = event->data.mapping_start.tag;
+    } else if (event->type == YAML_SEQUENCE_START_EVENT) {
+        anchor = event->data.sequence_start.anchor;
+        tag = event->data.sequence_start.tag;
+    }
+    if (anchor || event->type == YAML_ALIAS_EVENT)
+        return fail_at(r, line,
+                       "anchors and aliases (&name, *name) are not accepted; write the "
+                       "value out at each place");
+    if (tag)
+        return fail_at(r, line, "tags (!name) are not accepted; write the plain value");
+    return 0;
+}
+
+static int take_event(struct reader *r, const yaml_event_t *event)
+{
+    int line = (int)event->start_mark.line + 1;
+    BRC_TRY(refuse_extras(r, event, line));
+    switch (event->type) {
+    case YAML_DOCUMENT_START_EVENT:
+        return r->is_done ? fail_at(r, line, "a case file holds one document; this is a second")
+                          : 0;
+    case YAML_DOCUMENT_END_EVENT:
+        r->is_done = true;
+        return 0;
+    case YAML_SCALAR_EVENT:
+        return take_scalar(r, event, line);
+    case YAML_MAPPING_START_EVENT:
+        return open_mapping(r, line);
+    case YAML_MAPPING_END_EVENT:
+        return close_mapping(r);
+    case YAML_SEQUENCE_START_EVENT:
+        return open_sequence(r, line);
+    case YAML_SEQUENCE_END_EVENT:
+        return close_sequence(r);
+    default:
+        return 0;
+    }
+}
+
+static int take_events(struct reader *r, yaml_parser_t *parser)
+{
+    yaml_event_t event;
+    for (bool is_end = false; !is_end;) {
+        if (!yaml_parser_parse(parser, &event))
+            BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: not valid YAML: %s%s%s", r->c->path,
+                     (int)parser->problem_mark.line + 1,
+                     parser->problem ? parser->problem : "unreadable", parser->context ? ", " : "",
+                     parser->context ? parser->context : "");
+        int code = take_event(r, &event);
+        is_end = event.type == YAML_STREAM_END_EVENT;
+        yaml_event_delete(&event);
+        BRC_TRY(code);
+    }
+    return 0;
+}
+
+static int parse_yaml(struct brc_context *ctx, struct brc_case *c, size_t size)
+{
+    struct reader r = {.ctx = ctx, .c = c};
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser))
+        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for the YAML parser");
+    yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)c->text, size);
+    int code = take_events(&r, &parser);
+    yaml_parser_delete(&parser);
+    free(r.sequence);
+    return code;
+}
+
+/* ---- top level ----------------------------------------------------------------------------- */
+
+static const struct brc_case_entry *find_entry(const struct brc_case *c, const char *section,
+                                               const char *key)
+{
+    for (size_t i = 0; i < c->n; i++)
+        if (strcmp(c->entries[i].section, section) == 0 && strcmp(c->entries[i].key, key) == 0)
+            return &c->entries[i];
+    return NULL;
+}
+
+static int check_version(struct brc_context *ctx, const struct brc_case *c)
+{
+    const struct brc_case_entry *e = find_entry(c, "", "breccia");
+    char here[16];
+    snprintf(here, sizeof here, "%d", BRC_CASE_VERSION);
+    if (!e)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: breccia: required key is missing; a case file starts with the version of "
+                 "its format, `breccia: %s`",
+                 c->path, here);
+    if (strcmp(e->text, here) != 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s:%d: breccia: '%.60s' is another version of the case format; allowed %s; use "
+                 "the breccia that the case was written for, or compare the keys with `breccia "
+                 "params` and write `breccia: %s`",
+                 c->path, e->line, e->text, here, here);
+    return 0;
+}
+
+/* Keys and sections that stand in each other's place. */
+static int check_top_level(struct brc_context *ctx, const struct brc_case *c)
+{
+    char where[WHERE_SIZE];
+    for (size_t i = 0; i < c->n_sections; i++)
+        if (brc_params_find(brc_case_param_list, c->sections[i].name))
+            BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: takes a text, not a mapping",
+                     make_where(c, c->sections[i].line, c->sections[i].line == 0, where),
+                     c->sections[i].name);
+    for (size_t i = 0; i < c->n; i++) {
+        const struct brc_case_entry *e = &c->entries[i];
+        if (*e->section || brc_params_find(brc_case_param_list, e->key))
+            continue;
+        const char *nearest = brc_params_nearest(brc_case_param_list, e->key);
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: %s: unknown key of the top level; allowed breccia, title, model, models and "
+                 "sections, which are mappings `%s: {key: value}`%s%s%s",
+                 make_where(c, e->line, e->is_override, where), e->key, e->key,
+                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    }
+    return 0;
+}
+
+/* Splits `models` at commas and blanks. */
+static int split_models(struct brc_context *ctx, struct brc_case *c)
+{
+    c->n_models = 0;
+    for (const char *text = c->head.models; *(text += strspn(text, ", ")) != '\0';) {
+        size_t n = strcspn(text, ", ");
+        if (c->n_models == BRC_CASE_MAX_MODELS || n >= BRC_CASE_KEY_SIZE)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s: models: more than %d names, or a name of more than %d "
+                     "characters",
+                     c->path, BRC_CASE_MAX_MODELS, BRC_CASE_KEY_SIZE - 1);
+        snprintf(c->models[c->n_models++], BRC_CASE_KEY_SIZE, "%.*s", (int)n, text);
+        text += n;
+    }
+    return 0;
+}
+
+static int read_top_level(struct brc_context *ctx, struct brc_case *c)
+{
+    BRC_TRY(check_version(ctx, c));
+    BRC_TRY(check_top_level(ctx, c));
+    BRC_TRY(brc_case_section(ctx, c, "", brc_case_param_list, &c->head));
+    return split_models(ctx, c);
+}
+
+/* ---- interface ----------------------------------------------------------------------------- */
+
+int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
+                   struct brc_case *c)
+{
+    memset(c, 0, sizeof *c);
+    BRC_TRY(check_bytes(ctx, path, text, size));
+    c->path = brc_alloc(ctx, strlen(path) + 1, 1);
+    c->text = brc_alloc(ctx, size + 1, 1);
+    if (!c->path || !c->text)
+        return BRC_ERR_MEMORY;
+    strcpy(c->path, path);
+    memcpy(c->text, text, size);
+    BRC_TRY(parse_yaml(ctx, c, size));
+    return read_top_level(ctx, c);
+}
+
+int brc_case_read(struct brc_context *ctx, const char *path, struct brc_case *c)
+{
+    memset(c, 0, sizeof *c);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot open the case file %s: %s", path, strerror(errno));
+    char *text = brc_alloc(ctx, BRC_CASE_MAX_BYTES + 1, 1);
+    if (!text) {
+        fclose(file);
+        return BRC_ERR_MEMORY;
+    }
+    errno = 0;
+    size_t size = fread(text, 1, BRC_CASE_MAX_BYTES + 1, file);
+    int code = ferror(file)
+                   ? brc_error_set(ctx, BRC_ERR_IO, __FILE__, __LINE__,
+                                   "cannot read the case file %s: %s", path, strerror(errno))
+                   : brc_case_parse(ctx, path, text, size, c);
+    fclose(file);
+    free(text);
+    return code;
+}
+
+/* Keeps an override as a comment line of the case's text. */
+static int note_override(struct brc_context *ctx, struct brc_case *c, const char *assignment)
+{
+    static const char mark[] = "# --set ";
+    size_t old = strlen(c->text);
+    char *longer = brc_realloc(ctx, c->text, old + strlen(assignment) + sizeof mark + 2, 1);
+    if (!longer)
+        return BRC_ERR_MEMORY;
+    c->text = longer;
+    sprintf(longer + old, "%s%s%s\n", old && longer[old - 1] != '\n' ? "\n" : "", mark, assignment);
+    return 0;
+}
+
+static int check_override(struct brc_context *ctx, const char *assignment, const char *equals)
+{
+    const char *where = "--set";
+    size_t size = strlen(assignment);
+    if (!equals || size > BRC_CASE_MAX_BYTES)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: '%.60s' is not of the form section.key=value", where,
+                 assignment);
+    for (size_t i = 0, n; i < size; i += n) {
+        n = utf8_length((const unsigned char *)assignment + i, size - i);
+        if (n == 0 || (unsigned char)assignment[i] < 0x20)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: the value is no one-line UTF-8 text", where);
+    }
+    return 0;
+}
+
+int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *assignment)
+{
+    char part[3][BRC_CASE_KEY_SIZE] = {"", "", ""};
+    const char *equals = strchr(assignment, '='), *at = assignment;
+    int n_parts = 0;
+    BRC_TRY(check_override(ctx, assignment, equals));
+    for (;; n_parts++, at++) {
+        size_t n = strcspn(at, ".=");
+        if (n_parts == 3)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "--set: '%.60s' is not of the form section.key=value",
+                     assignment);
+        BRC_TRY(check_name(ctx, at, n, "--set"));
+        snprintf(part[n_parts], BRC_CASE_KEY_SIZE, "%.*s", (int)n, at);
+        at += n;
+        if (at == equals)
+            break;
+    }
+    const char *name[3] = {n_parts ? part[0] : "", n_parts == 2 ? part[1] : "", part[n_parts]};
+    if (*name[0] && !find_section(c, name[0]))
+        BRC_TRY(add_section(ctx, c, name[0], 0));
+    BRC_TRY(add_entry(ctx, c, name, equals + 1 + strspn(equals + 1, " "), 0));
+    BRC_TRY(note_override(ctx, c, assignment));
+    return read_top_level(ctx, c);
+}
+
+bool brc_case_has_section(const struct brc_case *c, const char *section)
+{
+    return find_section(c, section) != NULL;
+}
+
+/* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
+static const char *resolve_key(const struct brc_case_entry *e, struct brc_param_list list)
+{
+    bool is_short =
+        *e->parent && !brc_params_find(list, e->key) && brc_params_find(list, e->parent);
+    return is_short ? e->parent : e->key;
+}
+
+/* Line of another entry of the file that means the same key, 0 when there is none. */
+static int find_twin(const struct brc_case *c, size_t i, struct brc_param_list list)
+{
+    const char *key = resolve_key(&c->entries[i], list);
+    for (size_t j = 0; j < i; j++) {
+        const struct brc_case_entry *e = &c->entries[j];
+        if (!e->is_override && strcmp(e->section, c->entries[i].section) == 0 &&
+            strcmp(resolve_key(e, list), key) == 0)
+            return e->line;
+    }
+    return 0;
+}
+
+static int check_required(struct brc_context *ctx, const struct brc_case *c, const char *section,
+                          struct brc_param_list list)
+{
+    char where[WHERE_SIZE];
+    const struct brc_case_place *s = find_section(c, section);
+    for (int i = 0; i < list.n; i++) {
+        const struct brc_param *p = &list.params[i];
+        bool is_given = p->default_text != NULL;
+        for (size_t j = 0; j < c->n && !is_given; j++)
+            is_given = strcmp(c->entries[j].section, section) == 0 &&
+                       strcmp(resolve_key(&c->entries[j], list), p->key) == 0;
+        if (!is_given)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s: %s.%s: required key is missing (%s); allowed %s, unit %s",
+                     make_where(c, s ? s->line : 0, false, where), section, p->key, p->meaning,
+                     p->choices ? p->choices
+                     : p->range ? p->range
+                                : "any",
+                     p->unit);
+    }
+    return 0;
+}
+
+int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const char *section,
+                     struct brc_param_list list, void *values)
+{
+    char where[WHERE_SIZE];
+    BRC_TRY(brc_params_defaults(ctx, list, values));
+    for (size_t i = 0; i < c->n; i++) {
+        const struct brc_case_entry *e = &c->entries[i];
+        if (strcmp(e->section, section) != 0)
+            continue;
+        const char *key = resolve_key(e, list);
+        int twin = e->is_override ? 0 : find_twin(c, i, list);
+        make_where(c, e->line, e->is_override, where);
+        if (twin)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s: %s.%s: given twice, first in line %d; keep one of the two", where,
+                     section, key, twin);
+        BRC_TRY(brc_params_set(ctx, list, values, section, key, e->text, where));
+    }
+    return check_required(ctx, c, section, list);
+}
+
+/* The nearest of some names, NULL when none is near. */
+static const char *nearest_name(const char *name, const char *const *names, size_t n)
+{
+    const char *nearest = NULL;
+    int best = 0;
+    for (size_t i = 0; i < n; i++) {
+        int d = brc_params_distance(name, names[i]);
+        if (!nearest || d < best) {
+            nearest = names[i];
+            best = d;
+        }
+    }
+    return nearest && brc_params_is_near(name, best) ? nearest : NULL;
+}
+
+static void join_names(char *buffer, size_t size, const char *const *names, size_t n)
+{
+    size_t used = 0;
+    buffer[0] = '\0';
+    for (size_t i = 0; i < n && used < size; i++)
+        used += (size_t)snprintf(buffer + used, size - used, "%s%s", i ? ", " : "", names[i]);
+}
+
+int brc_case_finish(struct brc_context *ctx, const struct brc_case *c, const char *const *sections,
+                    size_t n)
+{
+    char where[WHERE_SIZE], all[400];
+    for (size_t i = 0; i < c->n_sections; i++) {
+        const struct brc_case_place *s = &c->sections[i];
+        bool is_known = strchr(s->name, '.') != NULL; /* nested: its section was judged */
+        for (size_t k = 0; k < n && !is_known; k++)
+            is_known = strcmp(s->name, sections[k]) == 0;
+        if (is_known)
+            continue;
+        const char *nearest = nearest_name(s->name, sections, n);
+        join_names(all, sizeof all, sections, n);
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: unknown section; allowed %s%s%s%s",
+                 make_where(c, s->line, s->line == 0, where), s->name, all,
+                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    }
+    return 0;
+}
+
+const char *brc_case_text(const struct brc_case *c)
+{
+    return c->text;
+}
+
+void brc_case_free(struct brc_case *c)
+{
+    for (size_t i = 0; i < c->n; i++)
+        free(c->entries[i].text);
+    free(c->entries);
+    free(c->sections);
+    free(c->path);
+    free(c->text);
+    memset(c, 0, sizeof *c);
+}
