@@ -13,8 +13,6 @@ static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASE_PARAMS)};
 #undef BRC_OWNER
 const struct brc_param_list brc_case_param_list = BRC_PARAMS(case_params, struct brc_case_params);
 
-enum { WHERE_SIZE = 256 };
-
 /* A mapping that is open while the file is read. */
 struct level {
     char key[BRC_CASE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
@@ -30,19 +28,6 @@ struct reader {
     char *sequence;   /* its texts so far, joined by commas */
     bool is_done;     /* the document has ended */
 };
-
-/* "file.yaml:12", or "--set" for the command line. */
-static const char *make_where(const struct brc_case *c, int line, bool is_override,
-                              char where[WHERE_SIZE])
-{
-    if (is_override)
-        snprintf(where, WHERE_SIZE, "--set");
-    else if (line > 0)
-        snprintf(where, WHERE_SIZE, "%.200s:%d", c->path, line);
-    else
-        snprintf(where, WHERE_SIZE, "%.200s", c->path);
-    return where;
-}
 
 /* ---- bytes --------------------------------------------------------------------------------- */
 
@@ -96,17 +81,9 @@ static int check_name(struct brc_context *ctx, const char *name, size_t n, const
     return 0;
 }
 
-static const struct brc_case_place *find_section(const struct brc_case *c, const char *name)
-{
-    for (size_t i = 0; i < c->n_sections; i++)
-        if (strcmp(c->sections[i].name, name) == 0)
-            return &c->sections[i];
-    return NULL;
-}
-
 static int add_section(struct brc_context *ctx, struct brc_case *c, const char *name, int line)
 {
-    const struct brc_case_place *old = find_section(c, name);
+    const struct brc_case_place *old = brc_case_find_section(c, name);
     if (old && old->line > 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s:%d: %s: given twice, first in line %d; keep one of the two", c->path, line,
@@ -158,9 +135,9 @@ static int add_entry(struct brc_context *ctx, struct brc_case *c, const char *co
                      const char *text, int line)
 {
     struct brc_case_entry e = {.line = line, .is_override = line == 0};
-    char where[WHERE_SIZE];
+    char where[BRC_CASE_WHERE_SIZE];
     const char *parent = name[1], *key = name[2];
-    make_where(c, line, e.is_override, where);
+    brc_case_where(c, line, e.is_override, where);
     snprintf(e.section, sizeof e.section, "%s", name[0]);
     int n = snprintf(e.key, sizeof e.key, "%s%s%s", parent, *parent ? "_" : "", key);
     if (n >= (int)sizeof e.key)
@@ -221,8 +198,8 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
     if (r->is_sequence)
         return take_sequence_item(r, text);
     if (top->key[0] == '\0') {
-        char where[WHERE_SIZE];
-        BRC_TRY(check_name(r->ctx, text, n, make_where(r->c, line, false, where)));
+        char where[BRC_CASE_WHERE_SIZE];
+        BRC_TRY(check_name(r->ctx, text, n, brc_case_where(r->c, line, false, where)));
         snprintf(top->key, sizeof top->key, "%s", text);
         top->line = line;
         return 0;
@@ -399,11 +376,11 @@ static int check_version(struct brc_context *ctx, const struct brc_case *c)
 /* Keys and sections that stand in each other's place. */
 static int check_top_level(struct brc_context *ctx, const struct brc_case *c)
 {
-    char where[WHERE_SIZE];
+    char where[BRC_CASE_WHERE_SIZE];
     for (size_t i = 0; i < c->n_sections; i++)
         if (brc_params_find(brc_case_param_list, c->sections[i].name))
             BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: takes a text, not a mapping",
-                     make_where(c, c->sections[i].line, c->sections[i].line == 0, where),
+                     brc_case_where(c, c->sections[i].line, c->sections[i].line == 0, where),
                      c->sections[i].name);
     for (size_t i = 0; i < c->n; i++) {
         const struct brc_case_entry *e = &c->entries[i];
@@ -413,7 +390,7 @@ static int check_top_level(struct brc_context *ctx, const struct brc_case *c)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: %s: unknown key of the top level; allowed breccia, title, model, models and "
                  "sections, which are mappings `%s: {key: value}`%s%s%s",
-                 make_where(c, e->line, e->is_override, where), e->key, e->key,
+                 brc_case_where(c, e->line, e->is_override, where), e->key, e->key,
                  nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
     }
     return 0;
@@ -529,124 +506,11 @@ int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *a
             break;
     }
     const char *name[3] = {n_parts ? part[0] : "", n_parts == 2 ? part[1] : "", part[n_parts]};
-    if (*name[0] && !find_section(c, name[0]))
+    if (*name[0] && !brc_case_find_section(c, name[0]))
         BRC_TRY(add_section(ctx, c, name[0], 0));
     BRC_TRY(add_entry(ctx, c, name, equals + 1 + strspn(equals + 1, " "), 0));
     BRC_TRY(note_override(ctx, c, assignment));
     return read_top_level(ctx, c);
-}
-
-bool brc_case_has_section(const struct brc_case *c, const char *section)
-{
-    return find_section(c, section) != NULL;
-}
-
-/* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
-static const char *resolve_key(const struct brc_case_entry *e, struct brc_param_list list)
-{
-    bool is_short =
-        *e->parent && !brc_params_find(list, e->key) && brc_params_find(list, e->parent);
-    return is_short ? e->parent : e->key;
-}
-
-/* Line of another entry of the file that means the same key, 0 when there is none. */
-static int find_twin(const struct brc_case *c, size_t i, struct brc_param_list list)
-{
-    const char *key = resolve_key(&c->entries[i], list);
-    for (size_t j = 0; j < i; j++) {
-        const struct brc_case_entry *e = &c->entries[j];
-        if (!e->is_override && strcmp(e->section, c->entries[i].section) == 0 &&
-            strcmp(resolve_key(e, list), key) == 0)
-            return e->line;
-    }
-    return 0;
-}
-
-static int check_required(struct brc_context *ctx, const struct brc_case *c, const char *section,
-                          struct brc_param_list list)
-{
-    char where[WHERE_SIZE];
-    const struct brc_case_place *s = find_section(c, section);
-    for (int i = 0; i < list.n; i++) {
-        const struct brc_param *p = &list.params[i];
-        bool is_given = p->default_text != NULL;
-        for (size_t j = 0; j < c->n && !is_given; j++)
-            is_given = strcmp(c->entries[j].section, section) == 0 &&
-                       strcmp(resolve_key(&c->entries[j], list), p->key) == 0;
-        if (!is_given)
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: %s.%s: required key is missing (%s); allowed %s, unit %s",
-                     make_where(c, s ? s->line : 0, false, where), section, p->key, p->meaning,
-                     p->choices ? p->choices
-                     : p->range ? p->range
-                                : "any",
-                     p->unit);
-    }
-    return 0;
-}
-
-int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const char *section,
-                     struct brc_param_list list, void *values)
-{
-    char where[WHERE_SIZE];
-    BRC_TRY(brc_params_defaults(ctx, list, values));
-    for (size_t i = 0; i < c->n; i++) {
-        const struct brc_case_entry *e = &c->entries[i];
-        if (strcmp(e->section, section) != 0)
-            continue;
-        const char *key = resolve_key(e, list);
-        int twin = e->is_override ? 0 : find_twin(c, i, list);
-        make_where(c, e->line, e->is_override, where);
-        if (twin)
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: %s.%s: given twice, first in line %d; keep one of the two", where,
-                     section, key, twin);
-        BRC_TRY(brc_params_set(ctx, list, values, section, key, e->text, where));
-    }
-    return check_required(ctx, c, section, list);
-}
-
-/* The nearest of some names, NULL when none is near. */
-static const char *nearest_name(const char *name, const char *const *names, size_t n)
-{
-    const char *nearest = NULL;
-    int best = 0;
-    for (size_t i = 0; i < n; i++) {
-        int d = brc_params_distance(name, names[i]);
-        if (!nearest || d < best) {
-            nearest = names[i];
-            best = d;
-        }
-    }
-    return nearest && brc_params_is_near(name, best) ? nearest : NULL;
-}
-
-static void join_names(char *buffer, size_t size, const char *const *names, size_t n)
-{
-    size_t used = 0;
-    buffer[0] = '\0';
-    for (size_t i = 0; i < n && used < size; i++)
-        used += (size_t)snprintf(buffer + used, size - used, "%s%s", i ? ", " : "", names[i]);
-}
-
-int brc_case_finish(struct brc_context *ctx, const struct brc_case *c, const char *const *sections,
-                    size_t n)
-{
-    char where[WHERE_SIZE], all[400];
-    for (size_t i = 0; i < c->n_sections; i++) {
-        const struct brc_case_place *s = &c->sections[i];
-        bool is_known = strchr(s->name, '.') != NULL; /* nested: its section was judged */
-        for (size_t k = 0; k < n && !is_known; k++)
-            is_known = strcmp(s->name, sections[k]) == 0;
-        if (is_known)
-            continue;
-        const char *nearest = nearest_name(s->name, sections, n);
-        join_names(all, sizeof all, sections, n);
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: unknown section; allowed %s%s%s%s",
-                 make_where(c, s->line, s->line == 0, where), s->name, all,
-                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
-    }
-    return 0;
 }
 
 const char *brc_case_text(const struct brc_case *c)

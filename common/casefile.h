@@ -21,6 +21,7 @@ enum {
     BRC_CASE_MAX_LEVELS = 3,
     BRC_CASE_MAX_ENTRIES = 4096,
     BRC_CASE_KEY_SIZE = 64,
+    BRC_CASE_WHERE_SIZE = 256,
     BRC_CASE_MAX_MODELS = 16
 };
 
@@ -76,8 +77,11 @@ int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *a
  * missing keys, bad values and a key given twice are errors. */
 int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const char *section,
                      struct brc_param_list list, void *values);
-/* True when the file or an override has the section. */
-bool brc_case_has_section(const struct brc_case *c, const char *section);
+/* Where a section was opened, NULL when neither the file nor an override has it. */
+const struct brc_case_place *brc_case_find_section(const struct brc_case *c, const char *section);
+/* "file.yaml:12", "file.yaml" for line 0, or "--set" for an override; returns where. */
+const char *brc_case_where(const struct brc_case *c, int line, bool is_override,
+                           char where[BRC_CASE_WHERE_SIZE]);
 /* Judges the section names, after all sections were read. */
 int brc_case_finish(struct brc_context *ctx, const struct brc_case *c, const char *const *sections,
                     size_t n);

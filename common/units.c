@@ -67,9 +67,9 @@ static bool is_angle(const ut_unit *unit)
 }
 
 /* False when the conversion is more than a factor. */
-static bool get_factor(const ut_unit *from, const ut_unit *to, double *factor)
+static bool get_factor(ut_unit *from, ut_unit *to, double *factor)
 {
-    cv_converter *converter = ut_get_converter((ut_unit *)from, (ut_unit *)to);
+    cv_converter *converter = ut_get_converter(from, to);
     if (!converter)
         return false;
     bool is_linear = cv_convert_double(converter, 0.0) == 0.0;
@@ -78,8 +78,8 @@ static bool get_factor(const ut_unit *from, const ut_unit *to, double *factor)
     return is_linear && isfinite(*factor) && *factor > 0;
 }
 
-static int factor_between(struct brc_context *ctx, const ut_unit *a, const ut_unit *b,
-                          const char *from, const char *to, const char *where, double *factor)
+static int factor_between(struct brc_context *ctx, ut_unit *a, ut_unit *b, const char *from,
+                          const char *to, const char *where, double *factor)
 {
     if (!a)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
