@@ -26,6 +26,8 @@ MAIN_SOURCES := $(wildcard common/main.c)
 objects = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$1))
 LIB_OBJECTS   := $(call objects,$(LIB_SOURCES))
 AID_OBJECTS   := $(call objects,$(AID_SOURCES))
+SAN_SOURCES   := $(if $(filter san,$(CFG)),$(wildcard tests/san/*.c))
+SAN_OBJECTS   := $(call objects,$(SAN_SOURCES))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SOURCES))
 BENCH_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(BENCH_SOURCES))
 PROGRAM       := $(if $(MAIN_SOURCES),$(BUILD)/breccia)
@@ -55,7 +57,8 @@ COMMON_FLAGS = $(FLAGS_$(CFG)) -fPIC -fno-semantic-interposition -ffp-contract=o
                -D_POSIX_C_SOURCE=200809L -I. -I$(BUILD) $(DEPS_CFLAGS) $(WARNINGS)
 CFLAGS_ALL   = -std=c17 $(COMMON_FLAGS) $(WARNINGS_C) $(CFLAGS)
 CXXFLAGS_ALL = -std=c++17 $(COMMON_FLAGS) $(WARNINGS_CXX) -frounding-math $(CXXFLAGS)
-LINK_FLAGS   = $(FLAGS_$(CFG)) $(LDFLAGS)
+LINK_FLAGS   = $(FLAGS_$(CFG)) $(LINK_FLAGS_$(CFG)) $(LDFLAGS)
+LINK_FLAGS_san := -Wl,--wrap=MPI_Init,--wrap=MPI_Finalize
 
 # --- building --------------------------------------------------------------------------------------
 .PHONY: all debug san library tests
@@ -93,15 +96,16 @@ $(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
 	@rm -f $@; ar rcs $@ $(LIB_OBJECTS)
 $(BUILD)/libaid.a: $(AID_OBJECTS) $(BUILD)/sources
 	@rm -f $@; ar rcs $@ $(AID_OBJECTS)
-$(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(BUILD)/libbreccia.a
+$(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(SAN_OBJECTS) $(BUILD)/libbreccia.a
 	@echo "link $@"
 	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) -o $@
-$(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(BUILD)/libaid.a $(BUILD)/libbreccia.a
+$(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS) $(BUILD)/libaid.a $(BUILD)/libbreccia.a
 	@mkdir -p $(@D)
 	@echo "link $@"
 	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) -lcmocka -o $@
 
--include $(patsubst %.o,%.d,$(LIB_OBJECTS) $(AID_OBJECTS) $(call objects,$(MAIN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES)))
+ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES)
+-include $(patsubst %.o,%.d,$(call objects,$(ALL_SOURCES)))
 
 # --- checking --------------------------------------------------------------------------------------
 .PHONY: check check-san clean help deps
