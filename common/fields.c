@@ -42,8 +42,11 @@ void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset s
 
 static void *aligned_block(struct brc_context *ctx, size_t rows, size_t row_size)
 {
-    size_t bytes = (rows * row_size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    void *block = aligned_alloc(ALIGNMENT, bytes > 0 ? bytes : ALIGNMENT);
+    void *block = NULL;
+    if (rows <= PTRDIFF_MAX / 2 / row_size) {
+        size_t bytes = (rows * row_size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+        block = aligned_alloc(ALIGNMENT, bytes > 0 ? bytes : ALIGNMENT);
+    }
     if (!block)
         brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
                       "out of memory: %zu rows of %zu bytes; use fewer grains or a larger machine",
@@ -97,7 +100,7 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
     if (n > t->cap) {
         size_t cap = t->cap > 0 ? t->cap : 16;
         while (cap < n)
-            cap *= 2;
+            cap = cap <= SIZE_MAX / 2 ? 2 * cap : n;
         return replace_columns(ctx, t, NULL, n, cap);
     }
     for (int i = 0; n > t->n && i < t->set.n; i++) {
