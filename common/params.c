@@ -122,7 +122,8 @@ int brc_params_quantity(struct brc_context *ctx, const char *text, const char *u
     double result = scaled_number(clean, length, factor);
     if (!isfinite(result))
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: '%.60s' is too large for a number", where, clean);
-    if (result == 0 && strcspn(clean, "123456789") < strcspn(clean, "eE"))
+    size_t first_digit = strcspn(clean, "123456789");
+    if (result == 0 && first_digit < length && first_digit < strcspn(clean, "eE"))
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: '%.60s' is too small for a number", where, clean);
     *value = result;
     return 0;
