@@ -102,7 +102,7 @@ $(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(SAN_OBJECTS) $(BUILD)/libbrecci
 $(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS) $(BUILD)/libaid.a $(BUILD)/libbreccia.a
 	@mkdir -p $(@D)
 	@echo "link $@"
-	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) -lcmocka -o $@
+	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) $(DEPS_TEST_LIBS) -o $@
 
 ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES)
 -include $(patsubst %.o,%.d,$(call objects,$(ALL_SOURCES)))
