@@ -32,7 +32,7 @@ struct brc_ledger {
 
 /* Sum of all terms with their signs, less the start; 0 when nothing is lost [J]. */
 double brc_ledger_imbalance(const struct brc_ledger *l);
-/* |imbalance| / boundary work (or the largest term where no boundary works). */
+/* |imbalance| / (|boundary work| + |work of gravity| + energy at the start). */
 double brc_ledger_residual(const struct brc_ledger *l);
 
 #endif
