@@ -18,6 +18,7 @@
     SCALAR(double, mass, BRC_STATE, "kg", "inertial mass in use; 0 on platens")                 \
     VECTOR(double, inertia, 3, BRC_STATE, "kg m2", "principal moments of inertia in use")       \
     SCALAR(double, travel, BRC_STATE, "m", "path of the centre plus reach times turn, summed")  \
+    SCALAR(double, travel_listed, BRC_STATE, "m", "travel when candidates were last listed")    \
     SCALAR(double, true_mass, BRC_STATE, "kg", "mass from the density")                         \
     VECTOR(double, true_inertia, 3, BRC_STATE, "kg m2", "principal moments from the density")   \
     SCALAR(double, volume, BRC_STATE, "m3", "volume")                                           \

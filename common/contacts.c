@@ -167,6 +167,22 @@ int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
     return code;
 }
 
+int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
+{
+    c->n = c->table.n;
+    int32_t p = 0;
+    for (size_t i = 0; i < c->n; i++) {
+        c->p0[i] = p;
+        c->pcap[i] = c->np[i];
+        p += c->np[i];
+    }
+    if ((size_t)p != c->points.n || c->model.n != c->n)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "saved contacts do not fit together: %zu points, %d expected",
+                 c->points.n, p);
+    c->version++;
+    return build_adjacency(ctx, c);
+}
+
 uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed)
 {
     uint64_t hash = brc_table_hash(&c->table, seed);

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 
 struct grid {
-    double cell;       /* edge, m */
-    size_t n_buckets;  /* a power of two */
-    uint32_t *first;   /* [n_buckets + 1] */
-    uint32_t *body;    /* [n] bodies of each bucket, ascending */
-    int64_t (*at)[3];  /* [n] cell of each body */
+    double cell;      /* edge, m */
+    size_t n_buckets; /* a power of two */
+    uint32_t *first;  /* [n_buckets + 1] */
+    uint32_t *body;   /* [n] bodies of each bucket, ascending */
+    int64_t (*at)[3]; /* [n] cell of each body */
 };
 
 void brc_candidates_free(struct brc_candidates *c)

@@ -6,14 +6,20 @@
 
 #include "brc.h"
 
-/* v_n-1/2 -> v_n+1/2 and x_n -> x_n+1 from the forces of step n, local damping included. */
-void brc_integrate_step(struct brc_sim *sim);
-/* Free rotation of one body by dt: q and w from the angular momentum l (space), second order,
- * |l| kept to round-off. */
+/* x_n -> x_n+1 with the velocities of the half step; orientation where the model reads it. */
+void brc_integrate_drift(struct brc_sim *sim);
+/* v_n-1/2 -> v_n+1/2 over dt from the forces of step n, local damping and gravity included; sets
+ * the kinetic energy m v- . v+ / 2 of the ledger. */
+void brc_integrate_kick(struct brc_sim *sim, double dt);
+/* Free rotation of one body by dt: q and w from the angular momentum l (space, kept); axis order
+ * 1-2-3-2-1, second order. */
 void brc_integrate_rotate(double q[4], double w[3], const double l[3], const double inertia[3],
                           double dt);
-/* Quasi-static regime: scaled masses and inertias from the contacts' k (eqs 26-27 of vgcm, with the
- * bound of docs/physics). Momentum never grows by it; lost kinetic energy goes to the ledger. */
+/* w = R I^-1 R^T l */
+void brc_integrate_spin(double w[3], const double q[4], const double l[3], const double inertia[3]);
+/* Quasi-static regime: masses and inertias grow to what the contacts' k needs for a step of 1
+ * (eq:vgcm:26, eq:vgcm:27 with the bound K_t = 4 sum k). They never shrink, and momentum is kept;
+ * the kinetic energy lost goes to the ledger. */
 void brc_integrate_scale_masses(struct brc_sim *sim);
 
 #endif

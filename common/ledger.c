@@ -6,7 +6,7 @@
 double brc_ledger_imbalance(const struct brc_ledger *l)
 {
     double sum = -l->start;
-#define BRC_LEDGER_SUM(name, sign, meaning) sum += (sign) * l->name;
+#define BRC_LEDGER_SUM(name, sign, meaning) sum += (sign)*l->name;
     BRC_LEDGER_TERMS(BRC_LEDGER_SUM)
 #undef BRC_LEDGER_SUM
     return sum;

@@ -78,9 +78,9 @@ int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
                        struct brc_model *complete)
 {
     *complete = *model;
-#define REQUIRE(operation)                                                                         \
-    if (!model->operation)                                                                         \
-    BRC_FAIL(ctx, BRC_ERR_INTERNAL, "model %s lacks the required operation " #operation,           \
+#define REQUIRE(operation)                                                               \
+    if (!model->operation)                                                               \
+    BRC_FAIL(ctx, BRC_ERR_INTERNAL, "model %s lacks the required operation " #operation, \
              model->name ? model->name : "(unnamed)")
     REQUIRE(name);
     REQUIRE(shape);
@@ -91,8 +91,8 @@ int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
     REQUIRE(energy);
     REQUIRE(springs);
 #undef REQUIRE
-#define DEFAULT(operation, function)                                                               \
-    if (!complete->operation)                                                                      \
+#define DEFAULT(operation, function) \
+    if (!complete->operation)        \
     complete->operation = function
     DEFAULT(check, accept);
     DEFAULT(create, create_nothing);

@@ -48,8 +48,7 @@ struct brc_platen {
     double friction;
     enum brc_grip grip; /* BRC_GRIP_NONE: contact only; else the end facets are held, unbreakable */
     double direction;   /* +1: moves along +n for a positive strain rate; -1 against */
-    double boundary_work; /* J, work done on the specimen */
-    double force_old[3];
+    double force;       /* N, along n, of the platen on the specimen */
 };
 
 enum { BRC_MAX_PLATENS = 6 };
@@ -68,5 +67,29 @@ enum { BRC_MAX_PLATENS = 6 };
     SCALAR(double, kinetic_ratio, BRC_STATE, "1", "kinetic / stored energy")                       \
     SCALAR(double, residual, BRC_STATE, "1", "energy residual")                                    \
     SCALAR(int64_t, broken, BRC_STATE, "1", "events so far")
+
+struct brc_result {
+    const char *name;
+    double value;
+    const char *unit;
+};
+enum { BRC_MAX_RESULTS = 24 };
+
+/* Number of platens of a test. */
+int brc_rig_platens(const struct brc_test_params *test);
+/* Places the platen bodies at the specimen's ends and gives them and the grains the velocity field
+ * of a uniform strain at the starting rate. Called once, when bodies have their places. */
+int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test);
+void brc_rig_free(struct brc_sim *sim);
+/* After the forces of a step: platen forces, boundary work, strain, loading rate. */
+int brc_rig_step(struct brc_sim *sim);
+/* At the end of a step: a row of the curve every sample_steps. */
+int brc_rig_sample(struct brc_sim *sim);
+/* The test has reached its end: strain_max, or the load has fallen to stop_drop of its peak. */
+bool brc_rig_done(const struct brc_sim *sim);
+/* The values measured so far; returns how many. docs/measures.md says how. */
+int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS]);
+/* After a loaded state has replaced bodies, curve and scalars. */
+void brc_rig_restore(struct brc_sim *sim);
 
 #endif

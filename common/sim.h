@@ -37,18 +37,39 @@ struct brc_run_params {
 };
 extern const struct brc_param_list brc_run_param_list;
 
+/* Scalars that belong to the state, declared once for saving and hashing (with the ledger's terms).
+ */
+#define BRC_RIG_SCALARS(X)                                                    \
+    X(double, rate, "s-1", "strain rate")                                     \
+    X(double, strain, "1", "platen strain, in the sense of the test")         \
+    X(double, force, "N", "mean platen force now, in the sense of the test")  \
+    X(double, force_sum, "N", "sum of force since the last row of the curve") \
+    X(int64_t, n_summed, "1", "steps in force_sum")                           \
+    X(double, force_peak, "N", "largest row of the curve")                    \
+    X(double, strain_peak, "1", "platen strain at the peak")                  \
+    X(double, unbalanced, "1", "mean unbalanced force / mean contact force")  \
+    X(double, unbalanced_max, "1", "its largest value once a tenth of the peak is carried")
+
+#define BRC_SIM_SCALARS(X)                                                                        \
+    X(int64_t, step, "1", "steps made")                                                           \
+    X(double, time, "s", "time")                                                                  \
+    X(double, dt, "s", "time step")                                                               \
+    X(double, dt_limit, "s", "stable limit at the last estimate")                                 \
+    X(double, stiffness_bound, "s-2", "largest sum k / m at the last estimate of dt_limit")       \
+    X(double, damping_ahead, "J", "work of local damping over the half step after the last kick") \
+    X(int64_t, n_listings, "1", "candidate listings so far")
+
+#define BRC_SCALAR_MEMBER(type, name, unit, meaning) type name;
+
 struct brc_rig {
     struct brc_test_params params;
     int n_platens;
     struct brc_platen platen[BRC_MAX_PLATENS];
-    int axis;            /* of the load: 2 = z, 1 = y */
-    double length;       /* m, distance of the platens at the start */
-    double section;      /* m2, area that force is divided by */
-    double rate, strain; /* 1/s; 1 */
-    double force;        /* N, mean platen force in the sense of the test */
-    double force_peak, strain_peak;
-    double unbalanced, unbalanced_max, kinetic_ratio;
-    int64_t peak_step;
+    int axis;       /* of the load: 2 = z, 1 = y */
+    double sense;   /* +1 compression, -1 tension */
+    double length;  /* m, distance of the platens at the start */
+    double section; /* m2, area that force is divided by */
+    BRC_RIG_SCALARS(BRC_SCALAR_MEMBER)
     struct brc_curve {
         BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)
         struct brc_table table;
@@ -67,15 +88,22 @@ struct brc_sim {
     struct brc_events events;
     struct brc_ledger ledger;
     struct brc_rig rig;
-    int64_t step;
-    double time, dt;
-    double dt_limit;       /* last estimate, s */
-    double skin;           /* m */
-    double damping_alpha;  /* local damping in use: 0 in the dynamic regime */
-    double *travel_listed; /* bodies' travel when candidates were last listed */
-    int64_t n_listings;
-    int64_t k_seen[2]; /* k_version of pairs and platens at the last mass scaling */
+    BRC_SIM_SCALARS(BRC_SCALAR_MEMBER)
+    double skin;          /* m */
+    double damping_alpha; /* local damping in use: 0 in the dynamic regime */
+    int64_t k_seen[2];    /* k_version of pairs and platens at the last mass scaling */
 };
+
+/* A scalar of struct brc_sim (ledger and rig included) by its offset. */
+struct brc_scalar {
+    const char *name;
+    enum brc_type type;
+    const char *unit;
+    const char *meaning;
+    size_t offset;
+};
+extern const struct brc_scalar brc_sim_scalars[];
+extern const int brc_sim_n_scalars;
 
 /* Builds bodies, platens, contacts and the first forces. params is the model's filled parameter
  * struct (copied); specimen must outlive the simulation. Nothing is left behind on failure. */
@@ -83,9 +111,12 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
                    const void *params, const struct brc_specimen *specimen,
                    const struct brc_test_params *test, const struct brc_run_params *run);
 void brc_sim_free(struct brc_sim *sim);
-/* One step: kick, drift, candidates, forces, gather, loading, ledger. */
+/* One step: drift, candidates, forces, loading, kick, sample. */
 int brc_sim_step(struct brc_sim *sim);
-/* 64-bit hash over bodies, contacts, points, rig and ledger. */
+/* After all tables and scalars of a created simulation have been replaced by saved ones: derives
+ * what is not saved (adjacency, counts, the model's private memory). */
+int brc_sim_restore(struct brc_sim *sim);
+/* 64-bit hash over bodies, contacts, points, events, rig and ledger. */
 uint64_t brc_sim_hash(const struct brc_sim *sim);
 
 /* Platen of a body number (a platen body). */

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "integrate.h"
+
+#include "sim.h"
+#include "vec.h"
+
+/* Turns q and the body-frame angular momentum by the free rotation about one principal axis. */
+static void rotate_axis(double q[4], double lb[3], int axis, double inertia, double dt)
+{
+    int j = (axis + 1) % 3, k = (axis + 2) % 3;
+    double angle = dt * lb[axis] / inertia;
+    double c = cos(angle), s = sin(angle);
+    double lj = c * lb[j] + s * lb[k];
+    lb[k] = c * lb[k] - s * lb[j];
+    lb[j] = lj;
+    double turn[4] = {cos(angle / 2), 0, 0, 0}, old[4] = {q[0], q[1], q[2], q[3]};
+    turn[1 + axis] = sin(angle / 2);
+    brc_quat_mul(q, old, turn);
+}
+
+static void quat_normalise(double q[4])
+{
+    double s = 1 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int k = 0; k < 4; k++)
+        q[k] *= s;
+}
+
+void brc_integrate_spin(double w[3], const double q[4], const double l[3], const double inertia[3])
+{
+    double m[3][3], lb[3];
+    brc_quat_matrix(m, q);
+    brc_mat_mul_t(lb, m, l);
+    for (int k = 0; k < 3; k++)
+        lb[k] /= inertia[k];
+    brc_mat_mul(w, m, lb);
+}
+
+void brc_integrate_rotate(double q[4], double w[3], const double l[3], const double inertia[3],
+                          double dt)
+{
+    double m[3][3], lb[3];
+    brc_quat_matrix(m, q);
+    brc_mat_mul_t(lb, m, l);
+    rotate_axis(q, lb, 0, inertia[0], dt / 2);
+    rotate_axis(q, lb, 1, inertia[1], dt / 2);
+    rotate_axis(q, lb, 2, inertia[2], dt);
+    rotate_axis(q, lb, 1, inertia[1], dt / 2);
+    rotate_axis(q, lb, 0, inertia[0], dt / 2);
+    quat_normalise(q);
+    brc_integrate_spin(w, q, l, inertia);
+}
+
+static bool is_isotropic(const double inertia[3])
+{
+    return inertia[0] == inertia[1] && inertia[1] == inertia[2];
+}
+
+static void turn_isotropic(double q[4], const double w[3], double dt)
+{
+    double phi[3], turn[4], old[4] = {q[0], q[1], q[2], q[3]};
+    brc_scale(phi, w, dt);
+    brc_quat_from_rotation(turn, phi);
+    brc_quat_mul(q, turn, old);
+    quat_normalise(q);
+}
+
+void brc_integrate_drift(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    double dt = sim->dt;
+    bool oriented = sim->model.flags & BRC_MODEL_ORIENTED;
+    for (size_t i = 0; i < b->n; i++) {
+        brc_axpy(b->x[i], dt, b->v[i]);
+        if (oriented && i < b->n_grains) {
+            if (is_isotropic(b->inertia[i]))
+                turn_isotropic(b->q[i], b->w[i], dt);
+            else
+                brc_integrate_rotate(b->q[i], b->w[i], b->l[i], b->inertia[i], dt);
+        }
+        b->travel[i] += dt * (brc_norm(b->v[i]) + b->reach[i] * brc_norm(b->w[i]));
+    }
+}
+
+/* Local non-viscous damping of a force (or moment) f against the velocity v. */
+static void local_damping(const struct brc_sim *sim, double d[3], const double f[3],
+                          const double v[3])
+{
+    double alpha = sim->damping_alpha;
+    if (sim->run.damping == BRC_DAMPING_CARTESIAN) {
+        for (int k = 0; k < 3; k++)
+            d[k] = v[k] == 0 ? 0 : -alpha * copysign(fabs(f[k]), v[k]); /* eq:vgcm:3 eq:vgcm:5 */
+        return;
+    }
+    double speed = brc_norm(v);
+    brc_scale(d, v, speed > 0 ? -alpha * brc_norm(f) / speed : 0);
+}
+
+struct kick_sums {
+    double kinetic;       /* sum of m v- . v+ / 2 */
+    double damping;       /* work of the damping force over the half step before the kick */
+    double damping_ahead; /* and over the half step after it */
+};
+
+/* v += dt (f + damping) / m, with the sums for the ledger. */
+static void kick_translation(const struct brc_sim *sim, size_t i, double dt, struct kick_sums *sums)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    double d[3] = {0, 0, 0}, old[3], *v = b->v[i];
+    brc_copy(old, v);
+    if (sim->damping_alpha > 0)
+        local_damping(sim, d, b->f[i], v);
+    for (int k = 0; k < 3; k++)
+        v[k] += dt * (b->f[i][k] + d[k]) / b->mass[i]; /* eq:vgcm:1 */
+    sums->kinetic += 0.5 * b->mass[i] * brc_dot(old, v);
+    sums->damping -= 0.5 * dt * brc_dot(d, old);
+    sums->damping_ahead -= 0.5 * dt * brc_dot(d, v);
+}
+
+/* w and l from the moments; for equal moments of inertia l is left alone. */
+static void kick_rotation(const struct brc_sim *sim, size_t i, double dt, struct kick_sums *sums)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    const double *inertia = b->inertia[i];
+    double d[3] = {0, 0, 0}, old[3], *w = b->w[i], lold[3];
+    brc_copy(old, w);
+    if (sim->damping_alpha > 0)
+        local_damping(sim, d, b->t[i], w); /* eq:vgcm:4 */
+    brc_add(d, d, b->t[i]);
+    if (is_isotropic(inertia)) {
+        brc_axpy(w, dt / inertia[0], d); /* eq:vgcm:2 */
+        sums->kinetic += 0.5 * inertia[0] * brc_dot(old, w);
+    } else {
+        brc_copy(lold, b->l[i]);
+        brc_axpy(b->l[i], dt, d);
+        brc_integrate_spin(w, b->q[i], b->l[i], inertia);
+        sums->kinetic += 0.5 * brc_dot(lold, w);
+    }
+    brc_sub(d, d, b->t[i]);
+    sums->damping -= 0.5 * dt * brc_dot(d, old);
+    sums->damping_ahead -= 0.5 * dt * brc_dot(d, w);
+}
+
+void brc_integrate_kick(struct brc_sim *sim, double dt)
+{
+    struct kick_sums sums = {0};
+    bool rotates = sim->model.flags & BRC_MODEL_ROTATES;
+    for (size_t i = 0; i < sim->bodies.n_grains; i++) {
+        kick_translation(sim, i, dt, &sums);
+        if (rotates)
+            kick_rotation(sim, i, dt, &sums);
+    }
+    sim->ledger.kinetic = sums.kinetic;
+    sim->ledger.local_damping += sums.damping;
+    sim->damping_ahead = sums.damping_ahead;
+}
+
+/* Body i gets mass m and moment of inertia: momentum is kept, so that velocities only fall. */
+static void set_mass(struct brc_sim *sim, size_t i, double mass, double inertia)
+{
+    struct brc_bodies *b = &sim->bodies;
+    double part[2] = {b->mass[i] > 0 ? b->mass[i] / mass : 1,
+                      b->inertia[i][0] > 0 ? b->inertia[i][0] / inertia : 1};
+    double dv[3], dw[3];
+    brc_scale(dv, b->v[i], 1 - part[0]);
+    brc_scale(dw, b->w[i], 1 - part[1]);
+    /* what leaves the kinetic energy of the leapfrog form, see ledger.h */
+    sim->ledger.mass_scaling += 0.5 * (1 - part[0]) * b->mass[i] * brc_norm2(b->v[i]) +
+                                0.5 * (1 - part[1]) * b->inertia[i][0] * brc_norm2(b->w[i]) +
+                                0.5 * sim->dt * (brc_dot(dv, b->f[i]) + brc_dot(dw, b->t[i]));
+    brc_sub(b->v[i], b->v[i], dv);
+    brc_sub(b->w[i], b->w[i], dw);
+    b->mass[i] = mass;
+    brc_set(b->inertia[i], inertia, inertia, inertia);
+}
+
+/* Sums of the contacts' k over the rows of a body. */
+static void add_stiffness(const struct brc_contacts *c, size_t body, double k[2])
+{
+    for (size_t r = c->adjacent_first[body]; r < c->adjacent_first[body + 1]; r++) {
+        uint32_t row = c->adjacent[r] / 2, side = c->adjacent[r] % 2;
+        k[0] += c->k[row][0];
+        k[1] += c->k[row][1 + side];
+    }
+}
+
+void brc_integrate_scale_masses(struct brc_sim *sim)
+{
+    if (sim->k_seen[0] == sim->pairs.k_version && sim->k_seen[1] == sim->platens.k_version)
+        return;
+    sim->k_seen[0] = sim->pairs.k_version;
+    sim->k_seen[1] = sim->platens.k_version;
+    struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        double k[2] = {0, 0};
+        add_stiffness(&sim->pairs, i, k);
+        add_stiffness(&sim->platens, i, k);
+        /* K_t = 4 sum k, K_theta = 4 sum k r^2: omega dt <= 2 with dt = 1 is proved for margin 1 */
+        double mass = fmax(b->mass[i], sim->run.mass_margin * 0.25 * 4 * k[0]); /* eq:vgcm:26 */
+        double inertia =
+            fmax(b->inertia[i][0], sim->run.mass_margin * 0.25 * 4 * k[1]); /* eq:vgcm:27 */
+        if (mass > b->mass[i] || inertia > b->inertia[i][0])
+            set_mass(sim, i, mass, inertia);
+    }
+}

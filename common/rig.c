@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "rig.h"
+
+#include "sim.h"
+#include "vec.h"
+
+#include <gsl/gsl_fit.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BRC_OWNER struct brc_test_params
+static const struct brc_param test_params[] = {BRC_PARAM_LIST(BRC_TEST_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_test_param_list = BRC_PARAMS(test_params, struct brc_test_params);
+
+#define BRC_OWNER struct brc_curve
+static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+/* Adaptive loading: the rate follows the unbalanced force with this gain a step. It falls faster
+ * than it grows, so that a burst of breaks is met at once. */
+static const double GAIN_DOWN = 0.02, GAIN_UP = 0.002;
+enum { UNBALANCED_STEPS = 10 }; /* steps between two measures of the unbalanced force */
+
+int brc_rig_platens(const struct brc_test_params *test)
+{
+    (void)test;
+    return 2;
+}
+
+/* Area that the force is divided by: the mean section, or pi D T / 2 (gt12 eq 16). */
+static double section_area(const struct brc_specimen *s, const struct brc_test_params *test,
+                           double length)
+{
+    double low[3], high[3];
+    brc_specimen_extent(s, low, high);
+    if (test->kind != BRC_TEST_BRAZILIAN)
+        return s->domain_volume / length;
+    double diameter = s->params.shape == BRC_SHAPE_CYLINDER ? s->params.diameter : length;
+    return BRC_PI * diameter * (high[2] - low[2]) / 2; /* eq:gt12:16 */
+}
+
+static void place_platen(struct brc_sim *sim, int i, const double at[3], int axis, double sign)
+{
+    const struct brc_test_params *test = &sim->rig.params;
+    struct brc_platen *p = &sim->rig.platen[i];
+    bool plates = test->kind == BRC_TEST_BRAZILIAN && test->plate_width > 0;
+    *p = (struct brc_platen){.body = (int32_t)sim->bodies.n_grains + i,
+                             .half_width = plates ? test->plate_width / 2 : HUGE_VAL,
+                             .friction = test->friction};
+    if (test->kind == BRC_TEST_TENSION)
+        p->grip = test->grip == 0 ? BRC_GRIP_AXIAL : BRC_GRIP_FULL;
+    p->n[axis] = sign;
+    p->across[0] = 1;
+    brc_copy(sim->bodies.x[p->body], at);
+    brc_copy(sim->bodies.x0[p->body], at);
+}
+
+/* Platens move by half of the rate each. */
+static void set_platen_velocities(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    for (int i = 0; i < rig->n_platens; i++)
+        brc_scale(sim->bodies.v[rig->platen[i].body], rig->platen[i].n,
+                  rig->sense * 0.5 * rig->rate * rig->length);
+}
+
+int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
+{
+    struct brc_rig *rig = &sim->rig;
+    rig->params = *test;
+    rig->n_platens = brc_rig_platens(test);
+    rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
+    rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;
+    struct brc_fieldset curve = BRC_FIELDSET(curve_fields, struct brc_curve);
+    brc_table_init(&rig->curve.table, "curve", curve, &rig->curve);
+    double low[3], high[3], at[3];
+    brc_specimen_extent(sim->specimen, low, high);
+    rig->length = high[rig->axis] - low[rig->axis];
+    rig->section = section_area(sim->specimen, test, rig->length);
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 3; k++)
+            at[k] = 0.5 * (low[k] + high[k]);
+        at[rig->axis] = i == 0 ? low[rig->axis] : high[rig->axis];
+        place_platen(sim, i, at, rig->axis, i == 0 ? 1 : -1);
+    }
+    rig->rate = test->rate;
+    set_platen_velocities(sim);
+    double middle = 0.5 * (low[rig->axis] + high[rig->axis]);
+    for (size_t i = 0; i < sim->bodies.n_grains; i++)
+        sim->bodies.v[i][rig->axis] =
+            -rig->sense * test->rate * (sim->bodies.x[i][rig->axis] - middle);
+    return 0;
+}
+
+void brc_rig_free(struct brc_sim *sim)
+{
+    brc_table_free(&sim->rig.curve.table);
+}
+
+/* Mean unbalanced force on a grain over mean contact force. */
+static double unbalanced_ratio(const struct brc_sim *sim)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    double unbalanced = 0, contact = 0;
+    size_t active = 0;
+    for (size_t i = 0; i < b->n_grains; i++)
+        unbalanced += brc_norm(b->f[i]);
+    for (size_t i = 0; i < sim->pairs.n; i++) {
+        double f = brc_norm(sim->pairs.f[i]);
+        contact += f;
+        active += f > 0;
+    }
+    if (contact <= 0)
+        return 0;
+    return unbalanced / (double)b->n_grains / (contact / (double)active);
+}
+
+/* Adaptive loading: down at once when the unbalanced force is above its target, slowly up below. */
+static void adapt_rate(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    const struct brc_test_params *t = &rig->params;
+    double ratio = rig->unbalanced / t->target;
+    double change = ratio > 1 ? -GAIN_DOWN * UNBALANCED_STEPS * fmin(log(ratio), 1)
+                              : GAIN_UP * UNBALANCED_STEPS * (1 - ratio);
+    double rate = rig->rate * exp(change);
+    rig->rate = fmin(fmax(rate, t->rate), t->rate_max);
+}
+
+/* Least-squares slope of the displacement along k against the place along k, over the gauge grains;
+ * the minus sign makes shortening positive. */
+static double gauge_strain(const struct brc_sim *sim, int k)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    const struct brc_rig *rig = &sim->rig;
+    double middle = sim->bodies.x0[rig->platen[0].body][rig->axis] +
+                    0.5 * rig->length * rig->platen[0].n[rig->axis];
+    double reach = 0.5 * rig->length * rig->params.gauge;
+    double n = 0, sx = 0, su = 0, sxx = 0, sxu = 0;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        if (fabs(b->x0[i][rig->axis] - middle) > reach)
+            continue;
+        double x = b->x0[i][k], u = b->x[i][k] - x;
+        n += 1;
+        sx += x;
+        su += u;
+        sxx += x * x;
+        sxu += x * u;
+    }
+    double spread = n * sxx - sx * sx;
+    return spread > 0 ? -(n * sxu - sx * su) / spread : 0;
+}
+
+static int add_row(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    struct brc_curve *c = &rig->curve;
+    const struct brc_ledger *l = &sim->ledger;
+    size_t i = c->table.n;
+    BRC_TRY(brc_table_resize(sim->ctx, &c->table, i + 1));
+    int across[2] = {0, rig->axis == 2 ? 1 : 2};
+    double stored = l->bond + l->contact_normal + l->contact_shear;
+    c->step[i] = sim->step;
+    c->time[i] = sim->time;
+    c->strain[i] = rig->strain;
+    c->force[i] = rig->force_sum / (double)rig->n_summed;
+    c->stress[i] = c->force[i] / rig->section;
+    c->strain_axial[i] = rig->sense * gauge_strain(sim, rig->axis);
+    c->strain_lateral[i] =
+        rig->sense * 0.5 * (gauge_strain(sim, across[0]) + gauge_strain(sim, across[1]));
+    c->rate[i] = rig->rate;
+    c->unbalanced[i] = rig->unbalanced;
+    c->kinetic_ratio[i] = stored > 0 ? l->kinetic / stored : 0;
+    c->residual[i] = sim->run.ledger ? brc_ledger_residual(l) : 0;
+    c->broken[i] = (int64_t)sim->events.table.n;
+    rig->force_sum = 0;
+    rig->n_summed = 0;
+    if (c->force[i] > rig->force_peak) {
+        rig->force_peak = c->force[i];
+        rig->strain_peak = c->strain[i];
+    }
+    return 0;
+}
+
+/* Forces of the platens on the specimen (along n), their mean in the sense of the test, their work.
+ */
+static void measure_platens(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    double mean = 0;
+    for (int i = 0; i < rig->n_platens; i++) {
+        struct brc_platen *p = &rig->platen[i];
+        const struct brc_bodies *b = &sim->bodies;
+        double force = -brc_dot(b->f[p->body], p->n);
+        /* trapezoid rule of ledger.h; the platen moves along n alone */
+        sim->ledger.boundary += 0.5 * (p->force + force) * brc_dot(b->v[p->body], p->n) * sim->dt;
+        p->force = force;
+        mean += rig->sense * force / rig->n_platens;
+    }
+    rig->force = mean;
+    rig->force_sum += mean;
+    rig->n_summed += 1;
+}
+
+int brc_rig_step(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    measure_platens(sim);
+    rig->strain += rig->rate * sim->dt;
+    if (sim->step % UNBALANCED_STEPS == 0) {
+        rig->unbalanced = unbalanced_ratio(sim);
+        if (rig->params.loading == BRC_LOADING_ADAPTIVE)
+            adapt_rate(sim);
+    }
+    set_platen_velocities(sim);
+    return 0;
+}
+
+int brc_rig_sample(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    if (sim->step % rig->params.sample_steps != 0)
+        return 0;
+    if (rig->force > 0.1 * rig->force_peak && rig->force_peak > 0)
+        rig->unbalanced_max = fmax(rig->unbalanced_max, rig->unbalanced);
+    return add_row(sim);
+}
+
+bool brc_rig_done(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    size_t n = rig->curve.table.n;
+    if (rig->strain >= rig->params.strain_max)
+        return true;
+    return n > 0 && rig->force_peak > 0 && sim->events.table.n > 0 &&
+           rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
+}
+
+/* Rows between the two parts of the peak, on the way up: [*first, *end). */
+static void modulus_rows(const struct brc_rig *rig, size_t *first, size_t *end)
+{
+    const struct brc_curve *c = &rig->curve;
+    double peak = rig->force_peak;
+    size_t i = 0;
+    while (i < c->table.n && c->force[i] < rig->params.modulus_low * peak)
+        i++;
+    *first = i;
+    while (i < c->table.n && c->force[i] <= rig->params.modulus_high * peak)
+        i++;
+    *end = i;
+}
+
+static double slope(const double *x, const double *y, size_t n)
+{
+    double c0, c1, cov00, cov01, cov11, chi2;
+    if (n < 2)
+        return NAN;
+    gsl_fit_linear(x, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
+    return c1;
+}
+
+static void add_result(struct brc_result *out, int *n, const char *name, double value,
+                       const char *unit)
+{
+    out[(*n)++] = (struct brc_result){name, value, unit};
+}
+
+/* Primary slope: force per thickness at half the strain of the peak, over that strain. */
+static double brazilian_slope(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    double low[3], high[3], half = rig->strain_peak / 2;
+    brc_specimen_extent(sim->specimen, low, high);
+    size_t i = 0;
+    while (i < rig->curve.table.n && rig->curve.strain[i] < half)
+        i++;
+    if (i == rig->curve.table.n || half <= 0)
+        return NAN;
+    return 2 * rig->curve.force[i] / (2 * half * (high[2] - low[2])); /* eq:gt12:17 */
+}
+
+int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS])
+{
+    static const char *const broken[BRC_N_MODES] = {"broken_tension", "broken_shear",
+                                                    "broken_torsion"};
+    const struct brc_rig *rig = &sim->rig;
+    const struct brc_curve *c = &rig->curve;
+    size_t first, end;
+    int n = 0;
+    modulus_rows(rig, &first, &end);
+    if (rig->params.kind == BRC_TEST_BRAZILIAN) {
+        add_result(out, &n, "S", brazilian_slope(sim), "Pa");
+    } else {
+        double axial = slope(c->strain_axial + first, c->stress + first, end - first);
+        double lateral = slope(c->strain_axial + first, c->strain_lateral + first, end - first);
+        add_result(out, &n, "E", axial, "Pa");    /* eq:gt12:25 */
+        add_result(out, &n, "nu", -lateral, "1"); /* eq:gt12:24 */
+        add_result(out, &n, "E_platen", slope(c->strain + first, c->stress + first, end - first),
+                   "Pa");
+    }
+    add_result(out, &n, "strength", rig->force_peak / rig->section, "Pa");
+    add_result(out, &n, "strain_at_peak", rig->strain_peak, "1");
+    add_result(out, &n, "force_peak", rig->force_peak, "N");
+    for (int m = 0; m < BRC_N_MODES; m++)
+        add_result(out, &n, broken[m], (double)sim->events.count[m], "1");
+    return n;
+}
+
+void brc_rig_restore(struct brc_sim *sim)
+{
+    for (int i = 0; i < sim->rig.n_platens; i++) {
+        struct brc_platen *p = &sim->rig.platen[i];
+        p->force = -brc_dot(sim->bodies.f[p->body], p->n);
+    }
+}

@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sim.h"
+
+#include "grid.h"
+#include "integrate.h"
+#include "vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BRC_OWNER struct brc_run_params
+static const struct brc_param run_params[] = {BRC_PARAM_LIST(BRC_RUN_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_run_param_list = BRC_PARAMS(run_params, struct brc_run_params);
+
+#define SIM_SCALAR(type, name, unit, meaning) \
+    {#name, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, name)},
+#define RIG_SCALAR(type, name, unit, meaning) \
+    {"rig_" #name, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, rig.name)},
+#define LEDGER_SCALAR(name, sign, meaning) \
+    {"energy_" #name, BRC_F64, "J", meaning, offsetof(struct brc_sim, ledger.name)},
+const struct brc_scalar brc_sim_scalars[] = {BRC_SIM_SCALARS(SIM_SCALAR) BRC_RIG_SCALARS(
+    RIG_SCALAR) BRC_LEDGER_TERMS(LEDGER_SCALAR){"energy_start", BRC_F64, "J", "energy at the start",
+                                                offsetof(struct brc_sim, ledger.start)}};
+const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scalars[0]);
+
+/* steps between two looks at whether the stable limit must be estimated again */
+enum { LIMIT_STEPS = 50 };
+/* growth of the largest sum k / m that calls for a new estimate */
+static const double LIMIT_GROWTH = 1.05;
+
+/* Forces and moments on every body: rows in ascending order, pairs before platens, so that the sums
+ * depend on global numbers only. */
+static void gather_rows(const struct brc_contacts *c, size_t body, double f[3], double t[3])
+{
+    for (size_t r = c->adjacent_first[body]; r < c->adjacent_first[body + 1]; r++) {
+        uint32_t row = c->adjacent[r] / 2;
+        if (c->adjacent[r] % 2) {
+            brc_axpy(f, 1, c->f[row]);
+            brc_axpy(t, 1, c->tb[row]);
+        } else {
+            brc_axpy(f, -1, c->f[row]);
+            brc_axpy(t, 1, c->ta[row]);
+        }
+    }
+}
+
+static void gather(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n; i++) {
+        brc_scale(b->f[i], sim->run.gravity, b->true_mass[i]);
+        brc_set(b->t[i], 0, 0, 0);
+        gather_rows(&sim->pairs, i, b->f[i], b->t[i]);
+        gather_rows(&sim->platens, i, b->f[i], b->t[i]);
+    }
+}
+
+static int update_candidates(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    struct brc_candidates grains = {0}, platens = {0};
+    int code = brc_grid_pairs(sim->ctx, b->x, b->reach, b->n_grains, sim->skin, &grains);
+    if (code == 0)
+        code = brc_grid_platens(sim->ctx, sim, &platens);
+    if (code == 0)
+        code = sim->model.pairs(sim, sim->state, &grains, &platens);
+    brc_candidates_free(&grains);
+    brc_candidates_free(&platens);
+    memcpy(b->travel_listed, b->travel, b->n * sizeof *b->travel);
+    sim->n_listings++;
+    return code;
+}
+
+/* The candidate list holds while no two bodies have come nearer by more than the skin. */
+static int check_travel(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    bool stale = false;
+    for (size_t i = 0; i < b->n; i++) {
+        double moved = b->travel[i] - b->travel_listed[i];
+        if (!(moved < 4 * sim->skin)) /* not a number included */
+            BRC_FAIL(sim->ctx, BRC_ERR_BLOWUP,
+                     "step %lld: body %zu moved by %g m at once, at %g %g %g m; use a smaller time "
+                     "step (run.dt_margin), more mass scaling (run.mass_margin) or slower loading "
+                     "(test.rate)",
+                     (long long)sim->step, i, moved, b->x[i][0], b->x[i][1], b->x[i][2]);
+        stale |= moved > 0.5 * sim->skin;
+    }
+    return stale ? update_candidates(sim) : 0;
+}
+
+/* Largest sum k / m over the bodies: grows when the stable limit may have fallen. */
+static double stiffness_bound(const struct brc_sim *sim)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    const struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens};
+    double bound = 0;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        double k[2] = {0, 0};
+        for (int s = 0; s < 2; s++) {
+            const struct brc_contacts *c = sets[s];
+            for (size_t r = c->adjacent_first[i]; r < c->adjacent_first[i + 1]; r++) {
+                k[0] += c->k[c->adjacent[r] / 2][0];
+                k[1] += c->k[c->adjacent[r] / 2][1 + c->adjacent[r] % 2];
+            }
+        }
+        double least = fmin(b->inertia[i][0], fmin(b->inertia[i][1], b->inertia[i][2]));
+        bound = fmax(bound, k[0] / b->mass[i]);
+        if (sim->model.flags & BRC_MODEL_ROTATES)
+            bound = fmax(bound, k[1] / least);
+    }
+    return bound;
+}
+
+/* Dynamic regime: keeps dt below the stable limit of the present springs. */
+static int update_dt(struct brc_sim *sim)
+{
+    double bound = stiffness_bound(sim);
+    if (bound <= LIMIT_GROWTH * sim->stiffness_bound)
+        return 0;
+    sim->stiffness_bound = bound;
+    BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
+    if (sim->run.dt > sim->dt_limit)
+        BRC_FAIL(
+            sim->ctx, BRC_ERR_INPUT,
+            "run.dt = %g s is above the stable limit of %g s at step %lld; use at most that, or "
+            "0 s for an automatic step",
+            sim->run.dt, sim->dt_limit, (long long)sim->step);
+    if (sim->run.dt > 0)
+        sim->dt = sim->run.dt;
+    else if (!(sim->dt_limit < HUGE_VAL))
+        BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
+                 "nothing is in contact yet, so there is no automatic time step: give run.dt");
+    else if (sim->dt == 0 || sim->dt > sim->run.dt_margin * sim->dt_limit)
+        sim->dt = sim->run.dt_margin * sim->dt_limit;
+    return 0;
+}
+
+static void compute_forces(struct brc_sim *sim)
+{
+    sim->model.forces(sim, sim->state);
+    sim->model.walls(sim, sim->state);
+    gather(sim);
+}
+
+static double mean_grain_radius(const struct brc_sim *sim)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double volume = 0;
+    for (size_t i = 0; i < f->n_cells; i++)
+        volume += f->volume[i];
+    return cbrt(volume / (double)f->n_cells * 3 / (4 * BRC_PI));
+}
+
+static void start_masses(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        b->mass[i] = b->true_mass[i];
+        brc_copy(b->inertia[i], b->true_inertia[i]);
+        if (sim->run.regime != BRC_QUASI_STATIC)
+            continue;
+        double largest = fmax(b->inertia[i][0], fmax(b->inertia[i][1], b->inertia[i][2]));
+        brc_set(b->inertia[i], largest, largest, largest);
+    }
+}
+
+/* Grains, contacts and candidates; then the model's choice of loops. */
+static int build(struct brc_sim *sim, const struct brc_test_params *test)
+{
+    struct brc_bodies *b = &sim->bodies;
+    sim->skin = sim->run.skin * mean_grain_radius(sim);
+    BRC_TRY(sim->model.create(sim, &sim->state));
+    BRC_TRY(sim->model.shape(sim, sim->state));
+    for (size_t i = 0; i < b->n_grains; i++) {
+        brc_copy(b->x0[i], b->x[i]);
+        memcpy(b->q0[i], b->q[i], sizeof b->q[i]);
+    }
+    BRC_TRY(brc_rig_create(sim, test));
+    start_masses(sim);
+    BRC_TRY(sim->model.bond(sim, sim->state));
+    BRC_TRY(update_candidates(sim));
+    sim->model.select(sim, sim->state);
+    return 0;
+}
+
+/* Forces at rest, masses or time step, and the first half kick. */
+static int start(struct brc_sim *sim)
+{
+    double stored[3];
+    compute_forces(sim);
+    sim->ledger = (struct brc_ledger){0};
+    if (sim->run.regime == BRC_QUASI_STATIC) {
+        sim->dt = 1;
+        sim->k_seen[0] = sim->k_seen[1] = -1;
+        brc_integrate_scale_masses(sim);
+    } else {
+        BRC_TRY(update_dt(sim));
+    }
+    sim->ledger = (struct brc_ledger){0};
+    /* from v_0 back to v_-1/2, then the first whole kick */
+    double alpha = sim->damping_alpha;
+    sim->damping_alpha = 0;
+    brc_integrate_kick(sim, -0.5 * sim->dt);
+    sim->damping_alpha = alpha;
+    brc_integrate_kick(sim, sim->dt);
+    sim->ledger.local_damping = 0;
+    brc_rig_restore(sim);
+    sim->model.energy(sim, sim->state, stored);
+    sim->ledger.bond = stored[0];
+    sim->ledger.contact_normal = stored[1];
+    sim->ledger.contact_shear = stored[2];
+    sim->ledger.start = sim->ledger.kinetic + stored[0] + stored[1] + stored[2];
+    return sim->ctx->code;
+}
+
+int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
+                   const void *params, const struct brc_specimen *specimen,
+                   const struct brc_test_params *test, const struct brc_run_params *run)
+{
+    memset(sim, 0, sizeof *sim);
+    sim->ctx = ctx;
+    sim->specimen = specimen;
+    sim->run = *run;
+    sim->damping_alpha = run->regime == BRC_QUASI_STATIC ? run->local_damping : 0;
+    brc_events_init(&sim->events);
+    BRC_TRY(brc_model_complete(ctx, model, &sim->model));
+    BRC_TRY(sim->model.check(ctx, params, specimen));
+    const struct brc_model *m = &sim->model;
+    size_t n_grains = specimen->facets.n_cells, n_platens = (size_t)brc_rig_platens(test);
+    sim->rig.n_platens = (int)n_platens;
+    sim->params = brc_alloc(ctx, 1, m->params.owner_size);
+    int code = sim->params ? 0 : BRC_ERR_MEMORY;
+    if (code == 0 && m->params.owner_size > 0)
+        memcpy(sim->params, params, m->params.owner_size);
+    if (code == 0)
+        code = brc_bodies_create(ctx, &sim->bodies, n_grains, n_platens, m->body_fields);
+    size_t n = n_grains + n_platens;
+    if (code == 0)
+        code =
+            brc_contacts_create(ctx, &sim->pairs, "pairs", n, m->contact_fields, m->point_fields);
+    if (code == 0)
+        code = brc_contacts_create(ctx, &sim->platens, "platens", n, m->contact_fields,
+                                   m->point_fields);
+    if (code == 0)
+        code = build(sim, test);
+    if (code == 0)
+        code = start(sim);
+    if (code != 0)
+        brc_sim_free(sim);
+    return code;
+}
+
+void brc_sim_free(struct brc_sim *sim)
+{
+    if (sim->model.free)
+        sim->model.free(sim->state);
+    brc_rig_free(sim);
+    brc_contacts_free(&sim->pairs);
+    brc_contacts_free(&sim->platens);
+    brc_bodies_free(&sim->bodies);
+    brc_events_free(&sim->events);
+    free(sim->params);
+    memset(sim, 0, sizeof *sim);
+}
+
+/* Work of gravity over the drift that has just been made. */
+static void add_gravity_work(struct brc_sim *sim)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    if (brc_norm2(sim->run.gravity) == 0)
+        return;
+    for (size_t i = 0; i < b->n_grains; i++)
+        sim->ledger.gravity += b->true_mass[i] * brc_dot(sim->run.gravity, b->v[i]) * sim->dt;
+}
+
+int brc_sim_step(struct brc_sim *sim)
+{
+    size_t events = sim->events.table.n;
+    double dt_before = sim->dt;
+    brc_integrate_drift(sim);
+    sim->ledger.local_damping += sim->damping_ahead;
+    add_gravity_work(sim);
+    sim->step++;
+    sim->time += sim->dt;
+    BRC_TRY(check_travel(sim));
+    compute_forces(sim);
+    BRC_TRY(sim->ctx->code);
+    BRC_TRY(brc_rig_step(sim));
+    if (sim->run.regime == BRC_QUASI_STATIC)
+        brc_integrate_scale_masses(sim);
+    else if (sim->step % LIMIT_STEPS == 0)
+        BRC_TRY(update_dt(sim));
+    brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
+    if (sim->events.table.n > events)
+        BRC_TRY(sim->model.after_break(sim, sim->state, events));
+    return brc_rig_sample(sim);
+}
+
+int brc_sim_restore(struct brc_sim *sim)
+{
+    BRC_TRY(brc_contacts_restore(sim->ctx, &sim->pairs));
+    BRC_TRY(brc_contacts_restore(sim->ctx, &sim->platens));
+    memset(sim->events.count, 0, sizeof sim->events.count);
+    for (size_t i = 0; i < sim->events.table.n; i++)
+        sim->events.count[sim->events.mode[i]]++;
+    brc_rig_restore(sim);
+    BRC_TRY(sim->model.restore(sim, sim->state));
+    sim->model.select(sim, sim->state);
+    return 0;
+}
+
+uint64_t brc_sim_hash(const struct brc_sim *sim)
+{
+    uint64_t hash = brc_table_hash(&sim->bodies.table, BRC_HASH_SEED);
+    hash = brc_table_hash(&sim->bodies.model, hash);
+    hash = brc_contacts_hash(&sim->pairs, hash);
+    hash = brc_contacts_hash(&sim->platens, hash);
+    hash = brc_table_hash(&sim->events.table, hash);
+    hash = brc_table_hash(&sim->rig.curve.table, hash);
+    for (int i = 0; i < brc_sim_n_scalars; i++)
+        hash = brc_hash_bytes((const char *)sim + brc_sim_scalars[i].offset,
+                              brc_type_size(brc_sim_scalars[i].type), hash);
+    return hash;
+}
