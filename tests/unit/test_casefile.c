@@ -10,6 +10,7 @@
     REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "contact modulus")              \
     CHOICE(interaction, "all|gap|area", "all", "which facets are contacts")   \
     REAL(interaction_gap, "m", "0 m", "[0, inf)", "gap")                      \
+    INT(softening, "1", "[1, 9]", "its parent is a key too")                  \
     CHOICE(softening_rule, "none|linear", "none", "a key that ends in _rule") \
     REAL3(size, "m", "1 m, 1 m, 1 m", "(0, inf)", "lengths")                  \
     TEXT(note, "", "a text")
@@ -100,7 +101,7 @@ static void spellings_agree(void **state)
     struct model m = check_good("breccia: 1\nvgcm: {interaction: gap, interaction_gap: 2 mm}\n");
     assert_true(m.interaction == 1 && m.interaction_gap == 2e-3);
     m = check_good("breccia: 1\nvgcm:\n  softening: {rule: linear}\n  size: 1 m, 2 m, 4 m\n");
-    assert_true(m.softening_rule == 1 && m.size[2] == 4);
+    assert_true(m.softening_rule == 1 && m.softening == 1 && m.size[2] == 4);
     m = check_good("breccia: 1\n");
     assert_true(m.e_bar == 48.8e9);
     m = check_good("breccia: 1\r\nvgcm:\r\n  e_bar: 3 Pa\r\n");
