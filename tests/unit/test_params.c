@@ -305,6 +305,10 @@ static void declarations_are_sound(void **state)
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "specimen", specimen_list));
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "test", test_list));
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "run", run_list));
+    for (int i = 0; i < brc_registry_count(); i++) {
+        const struct brc_model *model = brc_registry_at(i);
+        CHECK_OK(&ctx, brc_params_check_list(&ctx, model->name, model->params));
+    }
 }
 
 static void bad_declarations_are_found(void **state)
