@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* State files in HDF5: one dataset a field, of shape (rows, width), with the attributes unit and
+ * meaning; texts that tell where the state comes from under /provenance. io_h5.c is the only file
+ * with hdf5.h. */
+#ifndef BRC_IO_H5_H
+#define BRC_IO_H5_H
+
+#include "state.h"
+
+enum { BRC_H5_FORMAT = 1 };
+
+/* A text of the group /provenance. */
+struct brc_h5_text {
+    const char *name, *text;
+};
+
+/* What is saved beside the simulation: texts, and a part of the caller's own (NULL: none). */
+struct brc_h5_extra {
+    const struct brc_h5_text *texts;
+    int n_texts;
+    const struct brc_state_part *part;
+};
+
+/* Writes the whole state with version, compiler, model and state hash. The file appears at path
+ * complete or not at all: it is written beside it, forced to disk and renamed. Point ranges are
+ * compacted first. */
+int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
+                const struct brc_h5_extra *extra);
+/* Replaces the state of a simulation that was created from the same case. A file of another model,
+ * another specimen or other fields, or one whose content does not match its hash, is an error. */
+int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,
+                const struct brc_h5_extra *extra);
+/* A text of /provenance; *text is allocated, to be freed by the caller. */
+int brc_h5_read_text(struct brc_context *ctx, const char *path, const char *name, char **text);
+
+#endif

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "output.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define BRC_OWNER struct brc_output_params
+static const struct brc_param output_params[] = {BRC_PARAM_LIST(BRC_OUTPUT_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_output_param_list =
+    BRC_PARAMS(output_params, struct brc_output_params);
+
+enum { PATH_SIZE = 4096 };
+
+/* A text file that is written beside its place and renamed when it is complete. */
+struct draft {
+    FILE *file;
+    char path[PATH_SIZE], temporary[PATH_SIZE];
+};
+
+static int open_draft(struct brc_context *ctx, struct draft *d, const char *path)
+{
+    int n = snprintf(d->path, sizeof d->path, "%s", path);
+    int m = snprintf(d->temporary, sizeof d->temporary, "%s.part", path);
+    if (n >= PATH_SIZE || m >= PATH_SIZE)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", path);
+    d->file = fopen(d->temporary, "w");
+    if (!d->file)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", d->temporary, strerror(errno));
+    return 0;
+}
+
+static int close_draft(struct brc_context *ctx, struct draft *d)
+{
+    bool good = fflush(d->file) == 0 && !ferror(d->file) && fsync(fileno(d->file)) == 0;
+    good = fclose(d->file) == 0 && good;
+    if (good && rename(d->temporary, d->path) == 0)
+        return 0;
+    int reason = errno;
+    unlink(d->temporary);
+    BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", d->path, strerror(reason));
+}
+
+/* ---- JSON ---------------------------------------------------------------------------------- */
+
+static void json_text(FILE *out, const char *text)
+{
+    fputc('"', out);
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+        if (*c == '"' || *c == '\\')
+            fprintf(out, "\\%c", *c);
+        else if (*c < 0x20)
+            fprintf(out, "\\u%04x", *c);
+        else
+            fputc(*c, out);
+    }
+    fputc('"', out);
+}
+
+static void json_number(FILE *out, double value)
+{
+    if (isfinite(value))
+        fprintf(out, "%.17g", value);
+    else
+        fputs("null", out);
+}
+
+static void json_text_entry(FILE *out, const char *name, const char *text)
+{
+    fprintf(out, "  \"%s\": ", name);
+    json_text(out, text);
+    fputs(",\n", out);
+}
+
+static void json_number_entry(FILE *out, const char *name, double value)
+{
+    fprintf(out, "  \"%s\": ", name);
+    json_number(out, value);
+    fputs(",\n", out);
+}
+
+static void json_results(FILE *out, const struct brc_summary *s)
+{
+    fputs("  \"results\": {", out);
+    for (int i = 0; i < s->n_results; i++) {
+        const struct brc_summary_value *r = &s->results[i];
+        fprintf(out, "%s\n    \"%s\": {\"value\": ", i ? "," : "", r->name);
+        json_number(out, r->value);
+        fputs(", \"unit\": ", out);
+        json_text(out, r->unit);
+        fputc('}', out);
+    }
+    fputs(s->n_results ? "\n  }\n" : "}\n", out);
+}
+
+int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s)
+{
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    FILE *out = d.file;
+    fputs("{\n", out);
+    json_text_entry(out, "model", s->model);
+    json_text_entry(out, "case", s->case_name);
+    json_text_entry(out, "title", s->title);
+    fprintf(out, "  \"finished\": %s,\n", s->is_finished ? "true" : "false");
+    fprintf(out, "  \"seed\": %d,\n", s->seed);
+    json_text_entry(out, "version", BRC_VERSION);
+    fprintf(out, "  \"n_bodies\": %zu,\n  \"n_facets\": %zu,\n", s->n_bodies, s->n_facets);
+    fprintf(out, "  \"n_contacts\": %zu,\n  \"n_contacts_listed\": %zu,\n", s->n_contacts,
+            s->n_contacts_listed);
+    json_number_entry(out, "n_contacts_mean", s->n_contacts_mean);
+    fprintf(out, "  \"n_points\": %zu,\n  \"steps\": %" PRId64 ",\n", s->n_points, s->steps);
+    json_number_entry(out, "dt", s->dt);
+    json_number_entry(out, "cpu_s", s->cpu_s);
+    json_number_entry(out, "wall_s", s->wall_s);
+    json_number_entry(out, "ns_per_contact_step", s->ns_per_contact_step);
+    json_number_entry(out, "energy_residual", s->energy_residual);
+    json_number_entry(out, "unbalanced_max", s->unbalanced_max);
+    fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
+    json_results(out, s);
+    fputs("}\n", out);
+    return close_draft(ctx, &d);
+}
+
+const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name)
+{
+    for (int i = 0; i < s->n_results; i++)
+        if (strcmp(s->results[i].name, name) == 0)
+            return &s->results[i];
+    return NULL;
+}
+
+/* ---- CSV ----------------------------------------------------------------------------------- */
+
+static void csv_header(FILE *out, const struct brc_table *t)
+{
+    const char *comma = "";
+    for (int i = 0; i < t->set.n; i++) {
+        const struct brc_field *f = &t->set.fields[i];
+        for (int j = 0; j < f->width; j++) {
+            if (f->width == 1)
+                fprintf(out, "%s%s [%s]", comma, f->name, f->unit);
+            else
+                fprintf(out, "%s%s_%d [%s]", comma, f->name, j + 1, f->unit);
+            comma = ",";
+        }
+    }
+    fputc('\n', out);
+}
+
+static void csv_value(FILE *out, const struct brc_field *f, const void *column, size_t k)
+{
+    switch (f->type) {
+    case BRC_F64:
+        fprintf(out, "%.17g", ((const double *)column)[k]);
+        break;
+    case BRC_I64:
+        fprintf(out, "%" PRId64, ((const int64_t *)column)[k]);
+        break;
+    case BRC_I32:
+        fprintf(out, "%" PRId32, ((const int32_t *)column)[k]);
+        break;
+    case BRC_U8:
+        fprintf(out, "%u", ((const uint8_t *)column)[k]);
+        break;
+    }
+}
+
+int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t)
+{
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    csv_header(d.file, t);
+    for (size_t row = 0; row < t->n; row++) {
+        const char *comma = "";
+        for (int i = 0; i < t->set.n; i++) {
+            const struct brc_field *f = &t->set.fields[i];
+            size_t width = (size_t)f->width;
+            for (size_t j = 0; j < width; j++) {
+                fputs(comma, d.file);
+                csv_value(d.file, f, brc_table_column(t, i), row * width + j);
+                comma = ",";
+            }
+        }
+        fputc('\n', d.file);
+    }
+    return close_draft(ctx, &d);
+}
+
+int brc_output_text(struct brc_context *ctx, const char *path, const char *text)
+{
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    fputs(text, d.file);
+    return close_draft(ctx, &d);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text output: the summary of a run as JSON, and tables as CSV. */
+#ifndef BRC_OUTPUT_H
+#define BRC_OUTPUT_H
+
+#include "fields.h"
+#include "params.h"
+
+#define BRC_OUTPUT_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                    \
+    FLAG(plots, "on", "curves and pictures of cracks by gnuplot, where it is installed") \
+    REAL(facet_part, "1", "0.5", "(0, 1]",                                               \
+         "pictures: a facet is drawn when at least this part of its area is broken")     \
+    REAL(view_tilt, "rad", "75 degree", "[0, 3.15]",                                     \
+         "pictures: angle of the view from the z axis")                                  \
+    REAL(view_turn, "rad", "25 degree", "[0, 6.29]",                                     \
+         "pictures: turn of the view about the z axis")                                  \
+    INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")
+
+struct brc_output_params {
+    BRC_PARAM_MEMBERS(BRC_OUTPUT_PARAMS)
+};
+extern const struct brc_param_list brc_output_param_list;
+
+/* A measured value; name and unit are static texts. */
+struct brc_summary_value {
+    const char *name;
+    double value;
+    const char *unit;
+};
+
+enum { BRC_SUMMARY_MAX_RESULTS = 32 };
+
+/* What a run reports. Plain data: a child process sends it to its parent as bytes. */
+struct brc_summary {
+    char model[64], title[256], case_name[256];
+    bool is_finished; /* false: interrupted or failed */
+    int seed;
+    size_t n_bodies;          /* grains and platens */
+    size_t n_facets;          /* of the specimen, boundary included */
+    size_t n_contacts;        /* rows that carry a spring now, platens included */
+    size_t n_contacts_listed; /* rows, those that only watch included */
+    size_t n_points;          /* points of those rows, broken ones included */
+    double n_contacts_mean;   /* rows that carry a spring, mean over the steps */
+    int64_t steps;
+    double dt;
+    double cpu_s, wall_s;       /* of the step loop, all parts of a resumed run together */
+    double ns_per_contact_step; /* cpu_s over steps and n_contacts_mean */
+    double energy_residual, unbalanced_max;
+    uint64_t state_hash;
+    int n_results;
+    struct brc_summary_value results[BRC_SUMMARY_MAX_RESULTS];
+};
+
+/* summary.json; numbers have 17 digits, what is no number is null. Written beside and renamed. */
+int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s);
+/* A result by name, NULL when the test has none of that name. */
+const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name);
+/* One column a value, the header names them with their units: "step [1],x_1 [m],x_2 [m]". */
+int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t);
+/* A text file with this content. */
+int brc_output_text(struct brc_context *ctx, const char *path, const char *text);
+
+#endif
