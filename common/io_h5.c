@@ -182,13 +182,37 @@ static bool is_saved(const struct brc_field *field)
     return (field->flags & BRC_STATE) != 0;
 }
 
+/* The number of rows as an attribute of the group: a part without fields has rows, too. */
+static int write_rows(const struct h5_file *f, hid_t group, size_t n)
+{
+    uint64_t rows = n;
+    hid_t space = H5Screate(H5S_SCALAR);
+    hid_t id = H5Acreate2(group, "rows", H5T_STD_U64LE, space, H5P_DEFAULT, H5P_DEFAULT);
+    herr_t status = id < 0 ? -1 : H5Awrite(id, H5T_NATIVE_UINT64, &rows);
+    if (id >= 0)
+        H5Aclose(id);
+    H5Sclose(space);
+    return status < 0 ? write_failed(f, "rows") : 0;
+}
+
+static int read_rows(const struct h5_file *f, const char *path, size_t *n)
+{
+    uint64_t rows = 0;
+    hid_t id = H5Aopen_by_name(f->id, path, "rows", H5P_DEFAULT, H5P_DEFAULT);
+    herr_t status = id < 0 ? -1 : H5Aread(id, H5T_NATIVE_UINT64, &rows);
+    if (id >= 0)
+        H5Aclose(id);
+    *n = (size_t)rows;
+    return status < 0 ? read_failed(f, path) : 0;
+}
+
 /* The group and all its BRC_STATE fields; an empty part makes its group, too. */
 static int write_part(const struct h5_file *f, const struct brc_state_part *part)
 {
     hid_t group = H5Gcreate2(f->id, part->path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (group < 0)
         return write_failed(f, part->path);
-    int code = 0;
+    int code = write_rows(f, group, part->n);
     for (int i = 0; i < part->set.n && code == 0; i++)
         if (is_saved(&part->set.fields[i]))
             code = write_field(f, group, part, i);
@@ -196,24 +220,23 @@ static int write_part(const struct h5_file *f, const struct brc_state_part *part
     return code;
 }
 
-/* Opens a field's dataset and checks that it has the width and the kind that the field declares;
- * *rows is set. The caller closes *id. */
-static int open_field(const struct h5_file *f, const char *path, const struct brc_field *field,
-                      hid_t *id, size_t *rows)
+/* Opens a field's dataset, which must have the rows, the width and the kind that are expected. The
+ * caller closes *id. */
+static int open_field(const struct h5_file *f, const struct brc_state_part *part,
+                      const struct brc_field *field, hid_t *id)
 {
     char name[NAME_SIZE];
-    snprintf(name, sizeof name, "%s/%s", path, field->name);
+    snprintf(name, sizeof name, "%s/%s", part->path, field->name);
     *id = H5Dopen2(f->id, name, H5P_DEFAULT);
     if (*id < 0)
         return read_failed(f, name);
     hsize_t extent[2] = {0, 0};
     hid_t space = H5Dget_space(*id), type = H5Dget_type(*id);
     bool fits = H5Sget_simple_extent_ndims(space) == 2 &&
-                H5Sget_simple_extent_dims(space, extent, NULL) == 2 &&
+                H5Sget_simple_extent_dims(space, extent, NULL) == 2 && extent[0] == part->n &&
                 extent[1] == (hsize_t)field->width && H5Tequal(type, file_type(field->type)) > 0;
     H5Tclose(type);
     H5Sclose(space);
-    *rows = (size_t)extent[0];
     if (fits)
         return 0;
     H5Dclose(*id);
@@ -224,17 +247,11 @@ static int read_field(const struct h5_file *f, const struct brc_state_part *part
 {
     const struct brc_field *field = &part->set.fields[i];
     hid_t id;
-    size_t rows;
-    BRC_TRY(open_field(f, part->path, field, &id, &rows));
+    BRC_TRY(open_field(f, part, field, &id));
     int code = 0;
-    char *buffer = brc_alloc(f->ctx, rows, brc_field_size(field));
+    char *buffer = brc_alloc(f->ctx, part->n, brc_field_size(field));
     if (!buffer)
         code = BRC_ERR_MEMORY;
-    else if (rows != part->n)
-        code = brc_error_set(f->ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                             "%s has %zu rows of %s, the case makes %zu: it belongs to another "
-                             "case; resume with the case that made it",
-                             f->path, rows, part->path, part->n);
     else if (H5Dread(id, memory_type(field->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0)
         code = read_failed(f, field->name);
     else
@@ -244,105 +261,35 @@ static int read_field(const struct h5_file *f, const struct brc_state_part *part
     return code;
 }
 
-static int read_part(const struct h5_file *f, const struct brc_state_part *part)
+static int read_part(const struct h5_file *f, struct brc_state_part *part)
 {
+    size_t rows;
+    BRC_TRY(read_rows(f, part->path, &rows));
+    if (part->is_fixed && rows != part->n)
+        BRC_FAIL(f->ctx, BRC_ERR_INPUT,
+                 "%s has %zu rows of %s, the case makes %zu; resume with the case that made it",
+                 f->path, rows, part->path, part->n);
+    if (!part->is_fixed)
+        BRC_TRY(brc_table_resize(f->ctx, part->table, rows));
+    part->n = rows;
     for (int i = 0; i < part->set.n; i++)
         if (is_saved(&part->set.fields[i]))
             BRC_TRY(read_field(f, part, i));
     return 0;
 }
 
-/* ---- reading the counts -------------------------------------------------------------------- */
-
-static const struct brc_field *find_field(const struct brc_table *t, const char *name)
+/* Contacts must be sorted and name bodies that exist: all that follows relies on it. */
+static int restore_contacts(const struct h5_file *f, struct brc_contacts *c)
 {
-    for (int i = 0; i < t->set.n; i++)
-        if (strcmp(t->set.fields[i].name, name) == 0)
-            return &t->set.fields[i];
-    return NULL;
-}
-
-/* A 32-bit column that the reshaping needs before there is room for it; freed by the caller. */
-static int read_index(const struct h5_file *f, const char *path, const struct brc_field *field,
-                      int32_t **values, size_t *rows)
-{
-    hid_t id;
-    BRC_TRY(open_field(f, path, field, &id, rows));
-    *values = brc_alloc(f->ctx, *rows, sizeof **values);
-    herr_t status = -1;
-    if (*values)
-        status = H5Dread(id, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values);
-    H5Dclose(id);
-    if (!*values)
-        return BRC_ERR_MEMORY;
-    return status < 0 ? read_failed(f, path) : 0;
-}
-
-/* Pairs must be sorted and name bodies that exist: the rest of the program relies on it. */
-static int join_pairs(const struct h5_file *f, const struct brc_contacts *c, const int32_t *a,
-                      const int32_t *b, struct brc_state_shape *shape, int set)
-{
-    size_t n = shape->n_contacts[set];
-    shape->pair[set] = brc_alloc(f->ctx, n, sizeof *shape->pair[set]);
-    if (!shape->pair[set])
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < n; i++) {
-        bool sorted = i == 0 || a[i] > a[i - 1] || (a[i] == a[i - 1] && b[i] > b[i - 1]);
-        if (!sorted || a[i] < 0 || a[i] >= b[i] || (size_t)b[i] >= c->n_bodies ||
-            shape->np[set][i] < 0)
-            return read_failed(f, "list of contacts");
-        shape->pair[set][i][0] = a[i];
-        shape->pair[set][i][1] = b[i];
+    size_t points = 0;
+    for (size_t i = 0; i < c->table.n; i++) {
+        bool sorted =
+            i == 0 || c->a[i] > c->a[i - 1] || (c->a[i] == c->a[i - 1] && c->b[i] > c->b[i - 1]);
+        if (!sorted || c->a[i] < 0 || c->a[i] >= c->b[i] || (size_t)c->b[i] >= c->n_bodies ||
+            c->np[i] < 0 || (points += (size_t)c->np[i]) > INT32_MAX)
+            return read_failed(f, c->table.name);
     }
-    return 0;
-}
-
-static int read_contact_shape(const struct h5_file *f, const char *path,
-                              const struct brc_contacts *c, struct brc_state_shape *shape, int set)
-{
-    int32_t *a = NULL, *b = NULL;
-    size_t n, nb = 0, np = 0;
-    int code = read_index(f, path, find_field(&c->table, "a"), &a, &n);
-    if (code == 0)
-        code = read_index(f, path, find_field(&c->table, "b"), &b, &nb);
-    if (code == 0)
-        code = read_index(f, path, find_field(&c->table, "np"), &shape->np[set], &np);
-    if (code == 0 && (nb != n || np != n))
-        code = read_failed(f, path);
-    shape->n_contacts[set] = n;
-    if (code == 0)
-        code = join_pairs(f, c, a, b, shape, set);
-    free(a);
-    free(b);
-    return code;
-}
-
-static int read_count(const struct h5_file *f, const char *path, const struct brc_table *t,
-                      size_t *rows)
-{
-    hid_t id;
-    BRC_TRY(open_field(f, path, &t->set.fields[0], &id, rows));
-    H5Dclose(id);
-    return 0;
-}
-
-static int reshape(const struct h5_file *f, struct brc_sim *sim)
-{
-    struct brc_state_shape shape = {{0, 0}, {NULL, NULL}, {NULL, NULL}, 0, 0};
-    int code = read_contact_shape(f, "pairs", &sim->pairs, &shape, 0);
-    if (code == 0)
-        code = read_contact_shape(f, "platens", &sim->platens, &shape, 1);
-    if (code == 0)
-        code = read_count(f, "events", &sim->events.table, &shape.n_events);
-    if (code == 0)
-        code = read_count(f, "curve", &sim->rig.curve.table, &shape.n_curve);
-    if (code == 0)
-        code = brc_state_reshape(sim, &shape);
-    for (int set = 0; set < 2; set++) {
-        free(shape.pair[set]);
-        free(shape.np[set]);
-    }
-    return code;
+    return brc_contacts_restore(f->ctx, c);
 }
 
 /* ---- whole files --------------------------------------------------------------------------- */
@@ -376,11 +323,11 @@ static int write_provenance(const struct h5_file *f, const struct brc_sim *sim,
 
 static int write_all(const struct h5_file *f, struct brc_sim *sim, const struct brc_h5_extra *extra)
 {
-    struct brc_state_part part[BRC_STATE_MAX_PARTS];
-    int n = brc_state_parts(sim, part);
+    struct brc_state state;
+    brc_state_list(sim, &state);
     BRC_TRY(write_provenance(f, sim, extra));
-    for (int i = 0; i < n; i++)
-        BRC_TRY(write_part(f, &part[i]));
+    for (int i = 0; i < state.n; i++)
+        BRC_TRY(write_part(f, &state.part[i]));
     if (extra->part)
         BRC_TRY(write_part(f, extra->part));
     return H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 ? write_failed(f, "the state") : 0;
@@ -460,22 +407,23 @@ static int expect_text(const struct h5_file *f, const char *name, const char *ex
 
 static int read_all(const struct h5_file *f, struct brc_sim *sim, const struct brc_h5_extra *extra)
 {
-    struct brc_state_part part[BRC_STATE_MAX_PARTS];
+    struct brc_state state;
     char format[16], hash[17];
     snprintf(format, sizeof format, "%d", BRC_H5_FORMAT);
     BRC_TRY(expect_text(f, "format", format, "resume with the version that wrote it"));
     BRC_TRY(expect_text(f, "model", sim->model.name, "choose that model with --model"));
-    BRC_TRY(reshape(f, sim));
-    int n = brc_state_parts(sim, part);
-    for (int i = 0; i < n; i++)
-        BRC_TRY(read_part(f, &part[i]));
+    brc_state_list(sim, &state);
+    for (int i = 0; i < state.n; i++)
+        BRC_TRY(read_part(f, &state.part[i]));
     if (extra->part)
         BRC_TRY(read_part(f, extra->part));
+    BRC_TRY(restore_contacts(f, &sim->pairs));
+    BRC_TRY(restore_contacts(f, &sim->platens));
     hash_text(sim, hash);
     BRC_TRY(expect_text(f, "state_hash", hash,
                         "the file is damaged or comes from another build; start anew with "
                         "--force"));
-    return sim->model.restore(sim, sim->state);
+    return brc_sim_restore(sim);
 }
 
 int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,

@@ -18,7 +18,7 @@ struct brc_h5_text {
 struct brc_h5_extra {
     const struct brc_h5_text *texts;
     int n_texts;
-    const struct brc_state_part *part;
+    struct brc_state_part *part;
 };
 
 /* Writes the whole state with version, compiler, model and state hash. The file appears at path

@@ -1,81 +1,43 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "state.h"
 
-#define BRC_OWNER struct brc_sim
-static const struct brc_field clock_fields[] = {BRC_CLOCK_FIELDS(BRC_FIELD, BRC_FIELD3)};
-#undef BRC_OWNER
-#define BRC_OWNER struct brc_rig
-static const struct brc_field rig_fields[] = {BRC_RIG_FIELDS(BRC_FIELD, BRC_FIELD3)};
-#undef BRC_OWNER
-#define BRC_OWNER struct brc_platen
-static const struct brc_field platen_fields[] = {BRC_PLATEN_FIELDS(BRC_FIELD, BRC_FIELD3)};
-#undef BRC_OWNER
-#define BRC_OWNER struct brc_contacts
-static const struct brc_field version_fields[] = {BRC_VERSION_FIELDS(BRC_FIELD, BRC_FIELD3)};
-#undef BRC_OWNER
-#define BRC_OWNER struct brc_ledger
-static const struct brc_field ledger_fields[] = {
-#define LEDGER_ROW(name, sign, meaning) BRC_FIELD(double, name, BRC_STATE, "J", meaning)
-    BRC_LEDGER_TERMS(LEDGER_ROW)
-        BRC_FIELD(double, start, BRC_STATE, "J", "kinetic and stored energy at the start")
-#undef LEDGER_ROW
-};
-#undef BRC_OWNER
-/* sim->travel_listed, seen as rows of one value */
-struct travel_row {
-    double travel_listed;
-};
-#define BRC_OWNER struct travel_row
-static const struct brc_field travel_fields[] = {BRC_FIELD(
-    double, travel_listed, BRC_STATE, "m", "travel of each body when candidates were last listed")};
-#undef BRC_OWNER
-#define BRC_OWNER struct brc_events
-static const struct brc_field count_fields[] = {
-    BRC_FIELD3(int64_t, count, BRC_N_MODES, BRC_STATE, "1", "events by mode")};
-#undef BRC_OWNER
-
-static struct brc_state_part table_part(const char *path, struct brc_table *table)
+static void add_table(struct brc_state *s, const char *path, struct brc_table *table, bool is_fixed)
 {
-    return (struct brc_state_part){.path = path, .set = table->set, .table = table, .n = table->n};
+    s->part[s->n++] = (struct brc_state_part){
+        .path = path, .set = table->set, .table = table, .n = table->n, .is_fixed = is_fixed};
 }
 
-#define RECORDS(path_, fields, object, count)                                   \
-    (struct brc_state_part)                                                     \
-    {                                                                           \
-        .path = (path_), .set = BRC_FIELDSET(fields, *(object)), .table = NULL, \
-        .base = (char *)(object), .n = (size_t)(count)                          \
+/* The declared scalars of the simulation, seen as one row of a struct. */
+static void add_scalars(struct brc_state *s, struct brc_sim *sim)
+{
+    int n = brc_sim_n_scalars < BRC_STATE_MAX_SCALARS ? brc_sim_n_scalars : BRC_STATE_MAX_SCALARS;
+    for (int i = 0; i < n; i++) {
+        const struct brc_scalar *scalar = &brc_sim_scalars[i];
+        s->scalars[i] =
+            (struct brc_field){scalar->name,    scalar->type,  1, BRC_STATE, scalar->unit,
+                               scalar->meaning, scalar->offset};
     }
-
-static int contact_parts(struct brc_contacts *c, const char *const path[4],
-                         struct brc_state_part *part)
-{
-    part[0] = table_part(path[0], &c->table);
-    part[1] = table_part(path[1], &c->model);
-    part[2] = table_part(path[2], &c->points);
-    part[3] = RECORDS(path[3], version_fields, c, 1);
-    return 4;
+    s->part[s->n++] = (struct brc_state_part){.path = "scalars",
+                                              .set = {s->scalars, n, sizeof *sim},
+                                              .base = sim,
+                                              .n = 1,
+                                              .is_fixed = true};
 }
 
-int brc_state_parts(struct brc_sim *sim, struct brc_state_part part[BRC_STATE_MAX_PARTS])
+void brc_state_list(struct brc_sim *sim, struct brc_state *state)
 {
-    static const char *const pairs[] = {"pairs", "pairs/model", "pairs/points", "pairs/versions"};
-    static const char *const platens[] = {"platens", "platens/model", "platens/points",
-                                          "platens/versions"};
-    int n = 0;
-    part[n++] = RECORDS("clock", clock_fields, sim, 1);
-    part[n++] = RECORDS("ledger", ledger_fields, &sim->ledger, 1);
-    part[n++] = RECORDS("rig", rig_fields, &sim->rig, 1);
-    part[n++] = RECORDS("rig/platens", platen_fields, sim->rig.platen, sim->rig.n_platens);
-    part[n++] = table_part("bodies", &sim->bodies.table);
-    part[n++] = table_part("bodies/model", &sim->bodies.model);
-    n += contact_parts(&sim->pairs, pairs, part + n);
-    n += contact_parts(&sim->platens, platens, part + n);
-    part[n++] = table_part("events", &sim->events.table);
-    part[n++] = RECORDS("events/counts", count_fields, &sim->events, 1);
-    part[n++] = table_part("curve", &sim->rig.curve.table);
-    struct travel_row *travel = (struct travel_row *)sim->travel_listed;
-    part[n++] = RECORDS("bodies/listed", travel_fields, travel, sim->bodies.n);
-    return n;
+    state->n = 0;
+    add_scalars(state, sim);
+    add_table(state, "bodies", &sim->bodies.table, true);
+    add_table(state, "bodies/model", &sim->bodies.model, true);
+    add_table(state, "pairs", &sim->pairs.table, false);
+    add_table(state, "pairs/model", &sim->pairs.model, false);
+    add_table(state, "pairs/points", &sim->pairs.points, false);
+    add_table(state, "platens", &sim->platens.table, false);
+    add_table(state, "platens/model", &sim->platens.model, false);
+    add_table(state, "platens/points", &sim->platens.points, false);
+    add_table(state, "events", &sim->events.table, false);
+    add_table(state, "curve", &sim->rig.curve.table, false);
 }
 
 void *brc_state_value(const struct brc_state_part *part, int field, size_t row)
@@ -83,24 +45,5 @@ void *brc_state_value(const struct brc_state_part *part, int field, size_t row)
     const struct brc_field *f = &part->set.fields[field];
     if (part->table)
         return (char *)brc_table_column(part->table, field) + row * brc_field_size(f);
-    return part->base + row * part->set.owner_size + f->offset;
-}
-
-static int reshape_contacts(struct brc_context *ctx, struct brc_contacts *c,
-                            const struct brc_state_shape *shape, int set)
-{
-    const int32_t(*pair)[2] = (const int32_t(*)[2])shape->pair[set];
-    BRC_TRY(brc_contacts_set(ctx, c, NULL, 0));
-    BRC_TRY(brc_contacts_set(ctx, c, pair, shape->n_contacts[set]));
-    for (size_t i = 0; i < c->n; i++)
-        BRC_TRY(brc_contacts_points(ctx, c, i, shape->np[set][i]));
-    return 0;
-}
-
-int brc_state_reshape(struct brc_sim *sim, const struct brc_state_shape *shape)
-{
-    BRC_TRY(reshape_contacts(sim->ctx, &sim->pairs, shape, 0));
-    BRC_TRY(reshape_contacts(sim->ctx, &sim->platens, shape, 1));
-    BRC_TRY(brc_table_resize(sim->ctx, &sim->events.table, shape->n_events));
-    return brc_table_resize(sim->ctx, &sim->rig.curve.table, shape->n_curve);
+    return (char *)part->base + row * part->set.owner_size + f->offset;
 }
