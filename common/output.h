@@ -10,11 +10,11 @@
     FLAG(plots, "on", "curves and pictures of cracks by gnuplot, where it is installed") \
     REAL(facet_part, "1", "0.5", "(0, 1]",                                               \
          "pictures: a facet is drawn when at least this part of its area is broken")     \
-    REAL(view_tilt, "rad", "75 degree", "[0, 3.15]",                                     \
-         "pictures: angle of the view from the z axis")                                  \
-    REAL(view_turn, "rad", "25 degree", "[0, 6.29]",                                     \
-         "pictures: turn of the view about the z axis")                                  \
+    CHOICE(view, "auto|side|top", "auto",                                                \
+           "pictures: from the side, or along z; auto: by the test")                     \
     INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")
+
+enum brc_view { BRC_VIEW_AUTO, BRC_VIEW_SIDE, BRC_VIEW_TOP };
 
 struct brc_output_params {
     BRC_PARAM_MEMBERS(BRC_OUTPUT_PARAMS)

@@ -1,0 +1,459 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot.h"
+
+#include "vec.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096, N_SHADES = 5 };
+
+static const double MM = 1e3; /* pictures are in mm */
+
+#define BRC_OWNER struct broken_columns
+struct broken_columns {
+    BRC_BROKEN_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+static const struct brc_field broken_fields[] = {BRC_BROKEN_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+static int open_script(struct brc_context *ctx, const char *dir, const char *name, FILE **out)
+{
+    char path[PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
+    *out = fopen(path, "w");
+    if (!*out)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    return 0;
+}
+
+static int close_script(struct brc_context *ctx, const char *dir, const char *name, FILE *out)
+{
+    bool good = !ferror(out);
+    good = fclose(out) == 0 && good;
+    if (!good)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s/%s; is the disk full?", dir, name);
+    return 0;
+}
+
+/* Text between double quotes of gnuplot, with its markup switched off. */
+static void put_quoted(FILE *out, const char *text)
+{
+    fputc('"', out);
+    for (; *text; text++) {
+        if (strchr("\"\\", *text))
+            fputc('\\', out);
+        else if (strchr("_^{}@&~", *text))
+            fputs("\\\\", out);
+        fputc(*text, out);
+    }
+    fputc('"', out);
+}
+
+/* ---- broken area --------------------------------------------------------------------------- */
+
+static double inner_area(const struct brc_facets *f)
+{
+    double area = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0)
+            area += f->area[i];
+    return area;
+}
+
+int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_sim *sim)
+{
+    struct broken_columns column = {0};
+    struct brc_table table;
+    const struct brc_curve *curve = &sim->rig.curve;
+    const struct brc_events *e = &sim->events;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/broken.csv", dir);
+    struct brc_fieldset set = BRC_FIELDSET(broken_fields, column);
+    brc_table_init(&table, "broken", set, &column);
+    BRC_TRY(brc_table_resize(ctx, &table, curve->table.n));
+    double sum[BRC_N_MODES] = {0}, all = inner_area(&sim->specimen->facets);
+    size_t k = 0;
+    for (size_t i = 0; i < curve->table.n; i++) {
+        for (; k < e->table.n && e->step[k] <= curve->step[i]; k++)
+            sum[e->mode[k]] += e->area[k] / all;
+        column.step[i] = curve->step[i];
+        column.strain[i] = curve->strain[i];
+        column.tension[i] = sum[BRC_MODE_TENSION];
+        column.shear[i] = sum[BRC_MODE_SHEAR];
+        column.torsion[i] = sum[BRC_MODE_TORSION];
+    }
+    int code = brc_output_csv(ctx, path, &table);
+    brc_table_free(&table);
+    return code;
+}
+
+/* ---- cracks -------------------------------------------------------------------------------- */
+
+/* Angles of gnuplot's `set view`, and the direction towards the viewer. */
+struct view {
+    double tilt, turn; /* degrees */
+    double to_eye[3], to_light[3];
+};
+
+static struct view choose_view(const struct brc_output_params *output, enum brc_test test)
+{
+    bool top = output->view == BRC_VIEW_TOP ||
+               (output->view == BRC_VIEW_AUTO && test == BRC_TEST_BRAZILIAN);
+    struct view v = {.tilt = top ? 16 : 76, .turn = top ? 12 : 28};
+    double a = v.tilt * BRC_PI / 180, b = v.turn * BRC_PI / 180;
+    brc_set(v.to_eye, sin(a) * sin(b), -sin(a) * cos(b), cos(a));
+    a -= 0.5;
+    b -= 0.6;
+    brc_set(v.to_light, sin(a) * sin(b), -sin(a) * cos(b), cos(a));
+    return v;
+}
+
+/* The mode of each facet that counts as broken, -1 for the others; area by mode is summed. */
+struct cracks {
+    int8_t *mode; /* [n_facets] */
+    size_t n[BRC_N_MODES];
+    double area[BRC_N_MODES]; /* m2 */
+};
+
+static int classify(struct brc_context *ctx, const struct brc_sim *sim, double facet_part,
+                    struct cracks *c)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    const struct brc_events *e = &sim->events;
+    *c = (struct cracks){.mode = brc_alloc(ctx, f->n_facets, 1)};
+    double(*area)[BRC_N_MODES] = brc_alloc(ctx, f->n_facets, sizeof *area);
+    if (!c->mode || !area) {
+        free(c->mode);
+        free(area);
+        return BRC_ERR_MEMORY;
+    }
+    for (size_t k = 0; k < e->table.n; k++)
+        if (e->facet[k] >= 0 && (size_t)e->facet[k] < f->n_facets)
+            area[e->facet[k]][e->mode[k]] += e->area[k];
+    for (size_t i = 0; i < f->n_facets; i++) {
+        double sum = 0;
+        int most = 0;
+        for (int m = 0; m < BRC_N_MODES; m++) {
+            sum += area[i][m];
+            most = area[i][m] > area[i][most] ? m : most;
+        }
+        bool is_broken = sum > 0 && sum >= facet_part * f->area[i] * (1 - 1e-9);
+        c->mode[i] = (int8_t)(is_broken ? most : -1);
+        if (is_broken) {
+            c->n[most]++;
+            c->area[most] += f->area[i];
+        }
+    }
+    free(area);
+    return 0;
+}
+
+/* Facets whose normals meet the light at like angles share one of N_SHADES colours. */
+static int facet_shade(const struct view *v, const double normal[3])
+{
+    int shade = (int)(fabs(brc_dot(normal, v->to_light)) * N_SHADES);
+    return shade < N_SHADES ? shade : N_SHADES - 1;
+}
+
+/* Colour of a mode, 0xrrggbb, darkened by the shade; the last shade is full. */
+static unsigned mode_colour(int mode, int shade)
+{
+    static const unsigned full[BRC_N_MODES] = {0xe8472b, 0x2f7fd6, 0x2fa84f};
+    double part = 0.55 + 0.45 * shade / (N_SHADES - 1);
+    unsigned colour = 0;
+    for (int shift = 0; shift <= 16; shift += 8)
+        colour |= (unsigned)(part * (double)(full[mode] >> shift & 0xff)) << shift;
+    return colour;
+}
+
+static void put_polygon(FILE *out, const struct brc_facets *f, size_t facet)
+{
+    for (size_t k = f->first[facet]; k < f->first[facet + 1]; k++) {
+        const double *x = f->vertex[f->loop[k]];
+        fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
+    }
+    fputc('\n', out);
+}
+
+/* One data block a mode and shade; used[mode][shade] tells which exist. */
+static void put_cracks(FILE *out, const struct brc_facets *f, const struct cracks *c,
+                       const struct view *v, bool used[BRC_N_MODES][N_SHADES])
+{
+    for (int mode = 0; mode < BRC_N_MODES; mode++) {
+        for (int shade = 0; shade < N_SHADES; shade++) {
+            used[mode][shade] = false;
+            for (size_t i = 0; i < f->n_facets; i++) {
+                if (c->mode[i] != mode || facet_shade(v, f->normal[i]) != shade)
+                    continue;
+                if (!used[mode][shade])
+                    fprintf(out, "$%s_%d << end_of_data\n", brc_mode_name((enum brc_mode)mode),
+                            shade);
+                used[mode][shade] = true;
+                put_polygon(out, f, i);
+            }
+            if (used[mode][shade])
+                fputs("end_of_data\n", out);
+        }
+    }
+}
+
+/* The other face at the edge from a to b, -1 when there is none. */
+static int64_t face_across(const struct brc_convex *c, int32_t a, int32_t b)
+{
+    for (size_t g = 0; g < c->n_faces; g++) {
+        size_t first = c->first[g], n = c->first[g + 1] - first;
+        for (size_t k = 0; k < n; k++)
+            if (c->loop[first + k] == b && c->loop[first + (k + 1) % n] == a)
+                return (int64_t)g;
+    }
+    return -1;
+}
+
+/* Edges of the domain that are sharp or on the rim as seen; is_hidden: those behind it. */
+static void put_outline(FILE *out, const struct brc_convex *c, const struct view *v, bool is_hidden)
+{
+    static const double sharp = 0.87; /* cosine of the turn of the normal, 30 degrees */
+    fprintf(out, "$%s << end_of_data\n", is_hidden ? "hidden" : "outline");
+    for (size_t f = 0; f < c->n_faces; f++) {
+        size_t first = c->first[f], n = c->first[f + 1] - first;
+        for (size_t k = 0; k < n; k++) {
+            int32_t a = c->loop[first + k], b = c->loop[first + (k + 1) % n];
+            int64_t g = face_across(c, a, b);
+            if (g < (int64_t)f)
+                continue;
+            const double *nf = c->plane[f].n, *ng = c->plane[g].n;
+            bool front_f = brc_dot(nf, v->to_eye) > 0, front_g = brc_dot(ng, v->to_eye) > 0;
+            bool drawn = brc_dot(nf, ng) < sharp || front_f != front_g;
+            if (!drawn || (front_f || front_g) == is_hidden)
+                continue;
+            for (int end = 0; end < 2; end++) {
+                const double *x = c->vertex[end ? b : a];
+                fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
+            }
+            fputs("\n\n", out);
+        }
+    }
+    fputs("end_of_data\n", out);
+}
+
+static void put_ranges(FILE *out, const struct brc_convex *domain)
+{
+    for (int k = 0; k < 3; k++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (size_t i = 0; i < domain->n_vertices; i++) {
+            low = fmin(low, domain->vertex[i][k]);
+            high = fmax(high, domain->vertex[i][k]);
+        }
+        fprintf(out, "set %crange [%.4f:%.4f]\n", "xyz"[k], MM * low, MM * high);
+        fprintf(out, "set %ctics %g offset %s\n", "xyz"[k], high - low > 0.05 ? 20.0 : 10.0,
+                k == 2 ? "0.5,0" : "0,-0.3");
+    }
+}
+
+static void put_splot(FILE *out, const struct cracks *c, bool used[BRC_N_MODES][N_SHADES])
+{
+    fputs("splot $hidden with lines lc rgb '#b8b8b8' lw 1 dt 2 notitle", out);
+    for (int mode = 0; mode < BRC_N_MODES; mode++)
+        for (int shade = 0; shade < N_SHADES; shade++)
+            if (used[mode][shade])
+                fprintf(out, ", \\\n  $%s_%d with polygons fs solid 1 fc rgb '#%06x' notitle",
+                        brc_mode_name((enum brc_mode)mode), shade, mode_colour(mode, shade));
+    fputs(", \\\n  $outline with lines lc rgb '#404040' lw 1.4 notitle", out);
+    for (int mode = 0; mode < BRC_N_MODES; mode++)
+        fprintf(out,
+                ", \\\n  keyentry with points pt 5 ps 2 lc rgb '#%06x' title '%s: %zu facets, %.3g "
+                "cm^2'",
+                mode_colour(mode, N_SHADES - 1), brc_mode_name((enum brc_mode)mode), c->n[mode],
+                1e4 * c->area[mode]);
+    fputc('\n', out);
+}
+
+int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_sim *sim,
+                    const struct brc_output_params *output)
+{
+    const struct brc_specimen *s = sim->specimen;
+    struct view v = choose_view(output, (enum brc_test)sim->rig.params.kind);
+    bool used[BRC_N_MODES][N_SHADES];
+    struct cracks c;
+    FILE *out;
+    BRC_TRY(classify(ctx, sim, output->facet_part, &c));
+    int code = open_script(ctx, dir, "cracks.plot", &out);
+    if (code == 0) {
+        fprintf(out,
+                "# Broken facets of a run of breccia, one block a mode and shade; lengths in mm.\n"
+                "# Drawn by cracks.gp, which sets the terminal and loads this file.\n");
+        put_cracks(out, &s->facets, &c, &v, used);
+        put_outline(out, &s->domain, &v, false);
+        put_outline(out, &s->domain, &v, true);
+        put_ranges(out, &s->domain);
+        fprintf(out, "set view %g,%g,1.0\nset view equal xyz\nset xyplane relative 0\n", v.tilt,
+                v.turn);
+        put_splot(out, &c, used);
+        code = close_script(ctx, dir, "cracks.plot", out);
+    }
+    free(c.mode);
+    return code;
+}
+
+/* ---- scripts ------------------------------------------------------------------------------- */
+
+static void put_head(FILE *out, const char *name, int width, int height, int font)
+{
+    fprintf(out,
+            "# gnuplot %s.gp draws %s.png\n"
+            "set terminal pngcairo size %d,%d font 'sans,%d' background '#ffffff'\n"
+            "set output '%s.png'\n",
+            name, name, width, height, font, name);
+}
+
+static const char *run_colour(int i)
+{
+    static const char *const colour[] = {"#1b4f8f", "#d1570b", "#3a7d2c", "#7a3b93"};
+    return colour[i % 4];
+}
+
+static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const char *name)
+{
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s", runs->folder[i], name);
+    put_quoted(out, path);
+}
+
+/* Stress against strain: along the load, and across it to the left. */
+static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
+{
+    bool brazilian = runs->test == BRC_TEST_BRAZILIAN;
+    fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nset key %s bottom\nplot ",
+            brazilian ? "platen strain" : "axial strain; dashed: lateral strain",
+            brazilian ? "nominal tensile stress 2F/({/Symbol p}DT)" : "axial stress",
+            brazilian ? "right" : "center");
+    for (int i = 0; i < runs->n; i++) {
+        fputs(i ? ", \\\n  " : "", out);
+        put_file(out, runs, i, "curve.csv");
+        fprintf(out,
+                " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines lw 2.4 "
+                "lc rgb '%s' title ",
+                brazilian ? "strain" : "strain_axial", run_colour(i));
+        put_quoted(out, runs->label[i]);
+        if (brazilian)
+            continue;
+        fputs(", \\\n  ", out);
+        put_file(out, runs, i, "curve.csv");
+        fprintf(out,
+                " using (100*column('strain_lateral [1]')):(1e-6*column('stress [Pa]')) with lines "
+                "lw 1.6 dt (8,5) lc rgb '%s' notitle",
+                run_colour(i));
+    }
+    fputc('\n', out);
+}
+
+static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
+{
+    static const char *const dash[BRC_N_MODES] = {"1", "(10,4)", "(2,4)"};
+    fputs("set xlabel 'platen strain [%]'\nset ylabel 'broken area [% of all facets]'\n"
+          "set key left top\nplot ",
+          out);
+    for (int i = 0; i < runs->n; i++)
+        for (int mode = 0; mode < BRC_N_MODES; mode++) {
+            fputs(i || mode ? ", \\\n  " : "", out);
+            put_file(out, runs, i, "broken.csv");
+            fprintf(out,
+                    " using (100*column('strain [1]')):(100*column('%s [1]')) with lines lw 2.2 dt "
+                    "%s lc rgb '%s' title ",
+                    brc_mode_name((enum brc_mode)mode), dash[mode], run_colour(i));
+            char label[128];
+            snprintf(label, sizeof label, "%s, %s", runs->label[i],
+                     brc_mode_name((enum brc_mode)mode));
+            put_quoted(out, label);
+        }
+    fputc('\n', out);
+}
+
+static int write_curves(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs)
+{
+    FILE *out;
+    BRC_TRY(open_script(ctx, dir, "curves.gp", &out));
+    put_head(out, "curves", 1500, 640, 13);
+    fputs("set datafile separator ','\nset grid lc rgb '#dddddd' lt 1\nset border 3\n"
+          "set tics nomirror\nset multiplot layout 1,2 title ",
+          out);
+    put_quoted(out, runs->title);
+    fputs(" font ',15'\n", out);
+    put_stress_panel(out, runs);
+    put_broken_panel(out, runs);
+    fputs("unset multiplot\n", out);
+    return close_script(ctx, dir, "curves.gp", out);
+}
+
+static int write_pictures(struct brc_context *ctx, const char *dir,
+                          const struct brc_plot_runs *runs, int height)
+{
+    FILE *out;
+    BRC_TRY(open_script(ctx, dir, "cracks.gp", &out));
+    put_head(out, "cracks", height * 4 / 5 * runs->n, height, height / 70);
+    fputs("set pm3d depthorder border lc rgb '#202020' lw 0.4\nset border 0\n"
+          "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate parallel\n"
+          "set key at screen 0.5,0.04 bottom center vertical\n",
+          out);
+    fprintf(out, "set multiplot layout 1,%d title ", runs->n);
+    put_quoted(out, runs->title);
+    fputs("\n", out);
+    for (int i = 0; i < runs->n; i++) {
+        fputs("set title ", out);
+        put_quoted(out, runs->label[i]);
+        fprintf(out, "\nset key at screen %.4f,0.02 bottom center vertical\nload ",
+                (i + 0.5) / runs->n);
+        put_file(out, runs, i, "cracks.plot");
+        fputc('\n', out);
+    }
+    fputs("unset multiplot\n", out);
+    return close_script(ctx, dir, "cracks.gp", out);
+}
+
+/* Runs gnuplot in the folder; *status is its exit status, 127 when it is not installed. */
+static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *script, int *status)
+{
+    pid_t child = fork();
+    if (child < 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot start gnuplot: %s", strerror(errno));
+    if (child == 0) {
+        if (chdir(dir) == 0 && freopen("gnuplot.log", "a", stderr))
+            execlp("gnuplot", "gnuplot", script, (char *)NULL);
+        _exit(127);
+    }
+    int how;
+    while (waitpid(child, &how, 0) < 0)
+        if (errno != EINTR)
+            BRC_FAIL(ctx, BRC_ERR_IO, "lost gnuplot: %s", strerror(errno));
+    *status = WIFEXITED(how) ? WEXITSTATUS(how) : 1;
+    return 0;
+}
+
+int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,
+                  const struct brc_output_params *output)
+{
+    static const char *const script[] = {"curves.gp", "cracks.gp"};
+    BRC_TRY(write_curves(ctx, dir, runs));
+    BRC_TRY(write_pictures(ctx, dir, runs, output->picture_height));
+    for (int i = 0; i < 2; i++) {
+        int status = 0;
+        BRC_TRY(run_gnuplot(ctx, dir, script[i], &status));
+        if (status == 127) {
+            brc_log(ctx,
+                    "gnuplot is not installed, so pictures are left out; the scripts are "
+                    "%s/curves.gp and cracks.gp",
+                    dir);
+            return 0;
+        }
+        if (status != 0)
+            brc_log(ctx, "gnuplot failed on %s/%s; its messages are in gnuplot.log there", dir,
+                    script[i]);
+    }
+    return 0;
+}
