@@ -10,7 +10,10 @@ JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 .SUFFIXES:
 .DELETE_ON_ERROR:
 .SECONDARY:
-MAKEFLAGS += --no-builtin-rules -j$(JOBS) -Otarget
+MAKEFLAGS += --no-builtin-rules
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(JOBS) -Otarget
+endif
 
 # --- sources ---------------------------------------------------------------------------------------
 MODELS       := $(filter-out common calib tests cases docs results,$(patsubst %/model.c,%,$(sort $(wildcard */model.c))))
@@ -63,10 +66,10 @@ LINK_FLAGS_san := -Wl,--wrap=MPI_Init,--wrap=MPI_Finalize
 
 # --- building --------------------------------------------------------------------------------------
 .PHONY: all debug san library tests
-all: library $(PROGRAM) ## build/breccia and build/libbreccia.a
+all: library $(PROGRAM) ## build/breccia, build/libbreccia.a and build/libbreccia.so
 debug san: ## the same with assertions, or with the address and undefined-behaviour sanitizers
 	@+$(MAKE) --no-print-directory CFG=$@ all
-library: $(BUILD)/libbreccia.a
+library: $(BUILD)/libbreccia.a $(if $(filter san,$(CFG)),,$(BUILD)/libbreccia.so)
 tests: $(TEST_PROGRAMS)
 
 # files whose content is a fact; written only when the fact changes
@@ -95,6 +98,9 @@ $(BUILD)/obj/common/registry.c.o: $(BUILD)/registry_list.h
 $(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
 	@echo "ar   $@"
 	@rm -f $@; ar rcs $@ $(LIB_OBJECTS)
+$(BUILD)/libbreccia.so: $(LIB_OBJECTS) $(BUILD)/sources
+	@echo "link $@"
+	@$(CXX) $(LINK_FLAGS) -shared $(LIB_OBJECTS) $(DEPS_LIBS) -o $@
 $(BUILD)/libaid.a: $(AID_OBJECTS) $(BUILD)/sources
 	@rm -f $@; ar rcs $@ $(AID_OBJECTS)
 $(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(SAN_OBJECTS) $(BUILD)/libbreccia.a
@@ -109,11 +115,44 @@ ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TE
 -include $(patsubst %.o,%.d,$(call objects,$(ALL_SOURCES)))
 
 # --- checking --------------------------------------------------------------------------------------
-.PHONY: check check-san clean help deps
+.PHONY: check check-san check-mutants lint demo bench deps clean help
+RUN_ENV := CFG=$(CFG) BUILD=$(BUILD) BRECCIA=$(BUILD)/breccia JOBS=$(JOBS)
 check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
-	@BRECCIA=$(BUILD)/breccia BUILD=$(BUILD) JOBS=$(JOBS) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
-check-san: ## all tests under the sanitizers
+	@$(RUN_ENV) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
+check-san: ## all tests under the address and undefined-behaviour sanitizers
 	@+$(MAKE) --no-print-directory CFG=san check
+check-mutants: all $(TEST_PROGRAMS) ## plant faults in the laws; the tests must find each
+	@$(RUN_ENV) tests/mutants/run
+
+demo: all ## both models side by side: compression, tension, Brazilian test
+	@for case in $(sort $(wildcard cases/demo_*.yaml)); do $(BUILD)/breccia compare $$case || exit 1; done
+bench: all $(BENCH_PROGRAMS) ## times of the hot loops
+	@for program in $(BENCH_PROGRAMS); do $$program || exit 1; done
+
+# --- lint: each check leaves a mark, so that only what has changed is checked again ----------------
+LINT_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES)
+LINT_FILES   := $(sort $(wildcard $(foreach d,common calib $(MODELS) tests tests/*,$(addprefix $d/*.,c cpp h))))
+LINT_HEADERS := $(filter %.h,$(LINT_FILES))
+LINT_MARKS   := $(addprefix build/lint/,$(LINT_FILES:=.format) $(LINT_SOURCES:=.tidy) $(LINT_HEADERS:=.alone))
+lint: build/lint/tools ## format, clang-tidy, rules of includes, names, style and equation tags
+	@+$(MAKE) --no-print-directory -k lint-files lint-tree
+.PHONY: lint-files lint-tree
+lint-files: $(LINT_MARKS)
+lint-tree: $(LIB_OBJECTS) $(call objects,$(MAIN_SOURCES))
+	@tests/lint/run $(BUILD)/obj
+build/lint/tools: .ci/deps
+	@mkdir -p $(@D); .ci/deps lint $@
+build/lint/%.format: % .clang-format
+	@mkdir -p $(@D); clang-format --dry-run -Werror $< && touch $@
+build/lint/%.tidy: $(BUILD)/obj/%.o .clang-tidy
+	@mkdir -p $(@D); echo "tidy $*"
+	@clang-tidy --quiet $* -- $(if $(filter %.cpp,$*),-std=c++17,-std=c17) -D_POSIX_C_SOURCE=200809L \
+		-I. -I$(BUILD) $(DEPS_CFLAGS) 2>$@.log || { cat $@.log; exit 1; }
+	@touch $@
+build/lint/%.alone: % $(BUILD)/flags | $(BUILD)/registry_list.h
+	@mkdir -p $(@D); $(CC) $(CFLAGS_ALL) -Wno-unused-macros -MMD -MP -MT $@ -MF $@.d -fsyntax-only -x c -include $< /dev/null \
+		&& touch $@
+-include $(patsubst %,build/lint/%.alone.d,$(LINT_HEADERS))
 
 deps: ## install what is missing (Debian, Ubuntu)
 	@.ci/deps build build/deps.mk
@@ -121,3 +160,6 @@ clean: ## remove build/
 	rm -rf build
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z][a-z -]*:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+ifneq ($(filter clean,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif

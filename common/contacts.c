@@ -158,7 +158,7 @@ int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
     for (size_t i = 0; i < c->n; i++) {
         size_t start = k;
         for (int32_t j = 0; j < c->np[i]; j++)
-            from[k++] = (size_t)(c->p0[i] + j);
+            from[k++] = (size_t)c->p0[i] + (size_t)j;
         c->p0[i] = (int32_t)start;
         c->pcap[i] = c->np[i];
     }

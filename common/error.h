@@ -49,9 +49,10 @@ int brc_error_exit_status(int code);
 /* Forgets a recorded failure, so that the context can be used again. */
 void brc_error_clear(struct brc_context *ctx);
 
-/* Returns from the calling function with a recorded error. */
+/* Returns from the calling function with a recorded error. The comma lets compilers see that the
+ * result is not 0. */
 #define BRC_FAIL(ctx, code, ...) \
-    return brc_error_set((ctx), (code), __FILE__, __LINE__, __VA_ARGS__)
+    return (void)brc_error_set((ctx), (code), __FILE__, __LINE__, __VA_ARGS__), (code)
 /* Propagates a failure. */
 #define BRC_TRY(call)              \
     do {                           \

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linked into sanitizer builds only. MPI keeps memory of modules that it has unloaded again; no
- * suppression list can name those, so what MPI allocates while it starts and ends is not tracked. */
+ * suppression list can name those, so what MPI allocates while it starts and ends is not tracked.
+ */
 #include <sanitizer/lsan_interface.h>
 
 int __real_MPI_Init(int *argc, char ***argv);

@@ -23,9 +23,10 @@ static void start_is_quick_and_may_be_repeated(void **state)
     CHECK_OK(&ctx, brc_comm_start(&ctx));
     double took = seconds() - begin;
     CHECK_OK(&ctx, brc_comm_start(&ctx));
-    /* 0.03 s on an idle core; the daemon of a singleton would make it 0.35 s. The bound leaves room
-     * for a busy machine. */
-    CHECK_BETWEEN(took, 0, 2.0);
+    /* 0.03 s on an idle core, 0.35 s with the daemon of a singleton; several ranks take what the
+     * launcher takes. The bound leaves room for a busy machine. */
+    if (getenv("OMPI_COMM_WORLD_SIZE") == NULL)
+        CHECK_BETWEEN(took, 0, 2.0);
 }
 
 static void ranks_are_those_of_the_launcher(void **state)
