@@ -15,5 +15,8 @@ double brc_ledger_imbalance(const struct brc_ledger *l)
 double brc_ledger_residual(const struct brc_ledger *l)
 {
     double scale = fabs(l->boundary) + fabs(l->gravity) + fabs(l->start);
-    return scale > 0 ? fabs(brc_ledger_imbalance(l)) / scale : 0;
+    double imbalance = fabs(brc_ledger_imbalance(l));
+    if (scale > 0)
+        return imbalance / scale;
+    return imbalance > 0 ? 1 : 0; /* energy out of nothing */
 }

@@ -32,7 +32,8 @@ struct brc_ledger {
 
 /* Sum of all terms with their signs, less the start; 0 when nothing is lost [J]. */
 double brc_ledger_imbalance(const struct brc_ledger *l);
-/* |imbalance| / (|boundary work| + |work of gravity| + energy at the start). */
+/* |imbalance| / (|boundary work| + |work of gravity| + energy at the start); 1 when those are 0 and
+ * the imbalance is not. */
 double brc_ledger_residual(const struct brc_ledger *l);
 
 #endif

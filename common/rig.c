@@ -24,8 +24,7 @@ enum { UNBALANCED_STEPS = 10 }; /* steps between two measures of the unbalanced 
 
 int brc_rig_platens(const struct brc_test_params *test)
 {
-    (void)test;
-    return 2;
+    return test->kind == BRC_TEST_NONE ? 0 : 2;
 }
 
 /* Area that the force is divided by: the mean section, or pi D T / 2 (gt12 eq 16). */
@@ -78,12 +77,14 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     brc_specimen_extent(sim->specimen, low, high);
     rig->length = high[rig->axis] - low[rig->axis];
     rig->section = section_area(sim->specimen, test, rig->length);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < rig->n_platens; i++) {
         for (int k = 0; k < 3; k++)
             at[k] = 0.5 * (low[k] + high[k]);
         at[rig->axis] = i == 0 ? low[rig->axis] : high[rig->axis];
         place_platen(sim, i, at, rig->axis, i == 0 ? 1 : -1);
     }
+    if (rig->n_platens == 0)
+        return 0;
     rig->rate = test->rate;
     set_platen_velocities(sim);
     double middle = 0.5 * (low[rig->axis] + high[rig->axis]);
@@ -134,6 +135,8 @@ static double gauge_strain(const struct brc_sim *sim, int k)
 {
     const struct brc_bodies *b = &sim->bodies;
     const struct brc_rig *rig = &sim->rig;
+    if (rig->n_platens == 0)
+        return 0;
     double middle = sim->bodies.x0[rig->platen[0].body][rig->axis] +
                     0.5 * rig->length * rig->platen[0].n[rig->axis];
     double reach = 0.5 * rig->length * rig->params.gauge;
@@ -164,7 +167,7 @@ static int add_row(struct brc_sim *sim)
     c->step[i] = sim->step;
     c->time[i] = sim->time;
     c->strain[i] = rig->strain;
-    c->force[i] = rig->force_sum / (double)rig->n_summed;
+    c->force[i] = rig->n_summed > 0 ? rig->force_sum / (double)rig->n_summed : 0;
     c->stress[i] = c->force[i] / rig->section;
     c->strain_axial[i] = rig->sense * gauge_strain(sim, rig->axis);
     c->strain_lateral[i] =
@@ -206,6 +209,8 @@ static void measure_platens(struct brc_sim *sim)
 int brc_rig_step(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
+    if (rig->n_platens == 0)
+        return 0;
     measure_platens(sim);
     rig->strain += rig->rate * sim->dt;
     if (sim->step % UNBALANCED_STEPS == 0) {
@@ -289,6 +294,11 @@ int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RES
     size_t first, end;
     int n = 0;
     modulus_rows(rig, &first, &end);
+    if (rig->params.kind == BRC_TEST_NONE) {
+        for (int m = 0; m < BRC_N_MODES; m++)
+            add_result(out, &n, broken[m], (double)sim->events.count[m], "1");
+        return n;
+    }
     if (rig->params.kind == BRC_TEST_BRAZILIAN) {
         add_result(out, &n, "S", brazilian_slope(sim), "Pa");
     } else {

@@ -6,13 +6,13 @@
 
 #include "params.h"
 
-enum brc_test { BRC_TEST_COMPRESSION, BRC_TEST_TENSION, BRC_TEST_BRAZILIAN };
+enum brc_test { BRC_TEST_COMPRESSION, BRC_TEST_TENSION, BRC_TEST_BRAZILIAN, BRC_TEST_NONE };
 enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
 enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
 
 #define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                \
-    CHOICE(kind, "compression|tension|brazilian", "compression",                                   \
-           "compression and tension along z, Brazilian along y")                                   \
+    CHOICE(kind, "compression|tension|brazilian|none", "compression",                              \
+           "compression and tension along z, Brazilian along y; none: no platens")                 \
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                  \
            "adaptive: the rate follows the unbalanced force; fixed: at rate")                      \
     REAL(rate, "1/s", "2e-7 1/s", "(0, inf)",                                                      \
