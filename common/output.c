@@ -107,6 +107,7 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
     json_text_entry(out, "case", s->case_name);
     json_text_entry(out, "title", s->title);
     fprintf(out, "  \"finished\": %s,\n", s->is_finished ? "true" : "false");
+    json_text_entry(out, "ended_by", s->ended_by);
     fprintf(out, "  \"seed\": %d,\n", s->seed);
     json_text_entry(out, "version", BRC_VERSION);
     fprintf(out, "  \"n_bodies\": %zu,\n  \"n_facets\": %zu,\n", s->n_bodies, s->n_facets);

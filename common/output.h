@@ -33,7 +33,8 @@ enum { BRC_SUMMARY_MAX_RESULTS = 32 };
 /* What a run reports. Plain data: a child process sends it to its parent as bytes. */
 struct brc_summary {
     char model[64], title[256], case_name[256];
-    bool is_finished; /* false: interrupted or failed */
+    char ended_by[64]; /* key of the condition that ended the run, "signal" or "failure" */
+    bool is_finished;  /* by a condition of the test */
     int seed;
     size_t n_bodies;          /* grains and platens */
     size_t n_facets;          /* of the specimen, boundary included */

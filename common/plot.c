@@ -13,6 +13,9 @@
 enum { PATH_SIZE = 4096, N_SHADES = 5 };
 
 static const double MM = 1e3; /* pictures are in mm */
+/* of a run's panel in a picture of cracks, in heights of the picture */
+#define PANEL_WIDTH  0.75
+#define PANEL_HEIGHT 0.80
 
 #define BRC_OWNER struct broken_columns
 struct broken_columns {
@@ -105,7 +108,7 @@ static struct view choose_view(const struct brc_output_params *output, enum brc_
 {
     bool top = output->view == BRC_VIEW_TOP ||
                (output->view == BRC_VIEW_AUTO && test == BRC_TEST_BRAZILIAN);
-    struct view v = {.tilt = top ? 16 : 76, .turn = top ? 12 : 28};
+    struct view v = {.tilt = top ? 16 : 76, .turn = top ? 0 : 28};
     double a = v.tilt * BRC_PI / 180, b = v.turn * BRC_PI / 180;
     brc_set(v.to_eye, sin(a) * sin(b), -sin(a) * cos(b), cos(a));
     a -= 0.5;
@@ -242,21 +245,68 @@ static void put_outline(FILE *out, const struct brc_convex *c, const struct view
     fputs("end_of_data\n", out);
 }
 
-static void put_ranges(FILE *out, const struct brc_convex *domain)
+/* A step of 1, 2 or 5 times a power of ten that gives at most `most` steps over the length. */
+static double tic_step(double length, int most)
 {
+    static const double nice[] = {1, 2, 5, 10};
+    double step = pow(10, floor(log10(length / most)));
+    for (int i = 0; i < 4; i++)
+        if (nice[i] * step * most >= length)
+            return nice[i] * step;
+    return 10 * step;
+}
+
+/* Scale of `set view` that fits the specimen into a panel, the size of which is given in heights of
+ * the picture. Gnuplot draws the base with 4/7 of the panel less its margins at scale 1. */
+static double fit_scale(const struct view *v, const double extent[3])
+{
+    static const double base = 0.522 * PANEL_WIDTH;
+    double a = v->tilt * BRC_PI / 180, b = v->turn * BRC_PI / 180;
+    double wide = extent[0] * cos(b) + extent[1] * sin(b);
+    double deep = extent[0] * sin(b) + extent[1] * cos(b);
+    double high = extent[2] * sin(a) + deep * cos(a);
+    double unit = base / fmax(extent[0], extent[1]);
+    return fmin(0.9 * PANEL_HEIGHT / (high * unit), 0.74 * PANEL_WIDTH / (wide * unit));
+}
+
+/* Ranges and view; only the axes that the view shows at length have tics. */
+static void put_axes(FILE *out, const struct brc_convex *domain, const struct view *v)
+{
+    double extent[3];
+    bool side = v->tilt > 45;
     for (int k = 0; k < 3; k++) {
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (size_t i = 0; i < domain->n_vertices; i++) {
             low = fmin(low, domain->vertex[i][k]);
             high = fmax(high, domain->vertex[i][k]);
         }
+        extent[k] = MM * (high - low);
         fprintf(out, "set %crange [%.4f:%.4f]\n", "xyz"[k], MM * low, MM * high);
-        fprintf(out, "set %ctics %g offset %s\n", "xyz"[k], high - low > 0.05 ? 20.0 : 10.0,
-                k == 2 ? "0.5,0" : "0,-0.3");
+        if ((k == 2) == side)
+            fprintf(out, "set %ctics %g\nset %clabel '%c [mm]'\n", "xyz"[k], tic_step(extent[k], 4),
+                    "xyz"[k], "xyz"[k]);
+        else
+            fprintf(out, "unset %ctics\nunset %clabel\n", "xyz"[k], "xyz"[k]);
     }
+    fputs(side ? "set zlabel rotate parallel offset 2,0\n"
+               : "set xlabel offset 0,1\nset ylabel offset -5,0\n",
+          out);
+    fprintf(out, "set view %g,%g,%.4g*panel_scale\nset view equal xyz\nset xyplane relative 0\n",
+            v->tilt, v->turn, fit_scale(v, extent));
 }
 
-static void put_splot(FILE *out, const struct cracks *c, bool used[BRC_N_MODES][N_SHADES])
+/* Lines under the picture; cracks.gp says where the panel is. */
+static void put_legend(FILE *out, const struct cracks *c)
+{
+    for (int mode = 0; mode < BRC_N_MODES; mode++)
+        fprintf(out,
+                "set label %d '%s: %zu facets, %.3g cm^2' at screen panel_left, screen %.3f left "
+                "offset 1.5,0 point pt 5 ps 2 lc rgb '#%06x'\n",
+                mode + 1, brc_mode_name((enum brc_mode)mode), c->n[mode], 1e4 * c->area[mode],
+                0.08 - 0.028 * mode, mode_colour(mode, N_SHADES - 1));
+}
+
+static void put_splot(FILE *out, bool used[BRC_N_MODES][N_SHADES])
 {
     fputs("splot $hidden with lines lc rgb '#b8b8b8' lw 1 dt 2 notitle", out);
     for (int mode = 0; mode < BRC_N_MODES; mode++)
@@ -264,14 +314,7 @@ static void put_splot(FILE *out, const struct cracks *c, bool used[BRC_N_MODES][
             if (used[mode][shade])
                 fprintf(out, ", \\\n  $%s_%d with polygons fs solid 1 fc rgb '#%06x' notitle",
                         brc_mode_name((enum brc_mode)mode), shade, mode_colour(mode, shade));
-    fputs(", \\\n  $outline with lines lc rgb '#404040' lw 1.4 notitle", out);
-    for (int mode = 0; mode < BRC_N_MODES; mode++)
-        fprintf(out,
-                ", \\\n  keyentry with points pt 5 ps 2 lc rgb '#%06x' title '%s: %zu facets, %.3g "
-                "cm^2'",
-                mode_colour(mode, N_SHADES - 1), brc_mode_name((enum brc_mode)mode), c->n[mode],
-                1e4 * c->area[mode]);
-    fputc('\n', out);
+    fputs(", \\\n  $outline with lines lc rgb '#404040' lw 1.4 notitle\n", out);
 }
 
 int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_sim *sim,
@@ -291,10 +334,9 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
         put_cracks(out, &s->facets, &c, &v, used);
         put_outline(out, &s->domain, &v, false);
         put_outline(out, &s->domain, &v, true);
-        put_ranges(out, &s->domain);
-        fprintf(out, "set view %g,%g,1.0\nset view equal xyz\nset xyplane relative 0\n", v.tilt,
-                v.turn);
-        put_splot(out, &c, used);
+        put_axes(out, &s->domain, &v);
+        put_legend(out, &c);
+        put_splot(out, used);
         code = close_script(ctx, dir, "cracks.plot", out);
     }
     free(c.mode);
@@ -329,10 +371,9 @@ static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const c
 static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
 {
     bool brazilian = runs->test == BRC_TEST_BRAZILIAN;
-    fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nset key %s bottom\nplot ",
+    fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nplot ",
             brazilian ? "platen strain" : "axial strain; dashed: lateral strain",
-            brazilian ? "nominal tensile stress 2F/({/Symbol p}DT)" : "axial stress",
-            brazilian ? "right" : "center");
+            brazilian ? "nominal tensile stress 2F/({/Symbol p}DT)" : "axial stress");
     for (int i = 0; i < runs->n; i++) {
         fputs(i ? ", \\\n  " : "", out);
         put_file(out, runs, i, "curve.csv");
@@ -353,24 +394,31 @@ static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
     fputc('\n', out);
 }
 
+/* A mode that never occurs has no entry in the legend. */
 static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
 {
     static const char *const dash[BRC_N_MODES] = {"1", "(10,4)", "(2,4)"};
-    fputs("set xlabel 'platen strain [%]'\nset ylabel 'broken area [% of all facets]'\n"
-          "set key left top\nplot ",
-          out);
     for (int i = 0; i < runs->n; i++)
         for (int mode = 0; mode < BRC_N_MODES; mode++) {
+            fputs("stats ", out);
+            put_file(out, runs, i, "broken.csv");
+            fprintf(out, " using (column('%s [1]')) name 'part_%d_%d' nooutput\n",
+                    brc_mode_name((enum brc_mode)mode), i, mode);
+        }
+    fputs("set xlabel 'platen strain [%]'\nset ylabel 'broken area [% of all facets]'\nplot ", out);
+    for (int i = 0; i < runs->n; i++)
+        for (int mode = 0; mode < BRC_N_MODES; mode++) {
+            char label[128];
             fputs(i || mode ? ", \\\n  " : "", out);
             put_file(out, runs, i, "broken.csv");
             fprintf(out,
                     " using (100*column('strain [1]')):(100*column('%s [1]')) with lines lw 2.2 dt "
-                    "%s lc rgb '%s' title ",
-                    brc_mode_name((enum brc_mode)mode), dash[mode], run_colour(i));
-            char label[128];
+                    "%s lc rgb '%s' title (part_%d_%d_max > 0 ? ",
+                    brc_mode_name((enum brc_mode)mode), dash[mode], run_colour(i), i, mode);
             snprintf(label, sizeof label, "%s, %s", runs->label[i],
                      brc_mode_name((enum brc_mode)mode));
             put_quoted(out, label);
+            fputs(" : '')", out);
         }
     fputc('\n', out);
 }
@@ -381,7 +429,8 @@ static int write_curves(struct brc_context *ctx, const char *dir, const struct b
     BRC_TRY(open_script(ctx, dir, "curves.gp", &out));
     put_head(out, "curves", 1500, 640, 13);
     fputs("set datafile separator ','\nset grid lc rgb '#dddddd' lt 1\nset border 3\n"
-          "set tics nomirror\nset multiplot layout 1,2 title ",
+          "set tics nomirror\nset key outside top center horizontal\n"
+          "set multiplot layout 1,2 title ",
           out);
     put_quoted(out, runs->title);
     fputs(" font ',15'\n", out);
@@ -396,19 +445,18 @@ static int write_pictures(struct brc_context *ctx, const char *dir,
 {
     FILE *out;
     BRC_TRY(open_script(ctx, dir, "cracks.gp", &out));
-    put_head(out, "cracks", height * 4 / 5 * runs->n, height, height / 70);
+    put_head(out, "cracks", (int)(PANEL_WIDTH * height * runs->n), height, height / 70);
     fputs("set pm3d depthorder border lc rgb '#202020' lw 0.4\nset border 0\n"
-          "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate parallel\n"
-          "set key at screen 0.5,0.04 bottom center vertical\n",
+          "panel_scale = 1.0 # of the specimen in its panel\nset multiplot title ",
           out);
-    fprintf(out, "set multiplot layout 1,%d title ", runs->n);
     put_quoted(out, runs->title);
     fputs("\n", out);
     for (int i = 0; i < runs->n; i++) {
-        fputs("set title ", out);
+        fprintf(out, "panel_left = %.4f\nset origin %.4f,0.11\nset size %.4f,%.4f\nset label 9 ",
+                (i + 0.3) / runs->n, (double)i / runs->n, 1.0 / runs->n, PANEL_HEIGHT);
         put_quoted(out, runs->label[i]);
-        fprintf(out, "\nset key at screen %.4f,0.02 bottom center vertical\nload ",
-                (i + 0.5) / runs->n);
+        fprintf(out, " at screen %.4f,0.935 center font ',%d'\nload ", (i + 0.5) / runs->n,
+                height / 60);
         put_file(out, runs, i, "cracks.plot");
         fputc('\n', out);
     }

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "job.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N_COMMON = 4, LINE_SIZE = 512 };
+
+bool brc_job_section(int i, const char **name, struct brc_param_list *list)
+{
+    static const char *const common[N_COMMON] = {"specimen", "test", "run", "output"};
+    const struct brc_param_list *const lists[N_COMMON] = {&brc_specimen_param_list,
+                                                          &brc_test_param_list, &brc_run_param_list,
+                                                          &brc_output_param_list};
+    if (i < N_COMMON) {
+        *name = common[i];
+        *list = *lists[i];
+        return true;
+    }
+    if (i - N_COMMON >= brc_registry_count())
+        return false;
+    *name = brc_registry_at(i - N_COMMON)->name;
+    *list = brc_registry_at(i - N_COMMON)->params;
+    return true;
+}
+
+static void *section_values(struct brc_job *job, int i)
+{
+    void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
+    return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
+}
+
+static void take_name(struct brc_job *job, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(job->name, sizeof job->name, "%s", slash ? slash + 1 : path);
+    char *dot = strrchr(job->name, '.');
+    if (dot && dot != job->name)
+        *dot = '\0';
+}
+
+static int make_room(struct brc_context *ctx, struct brc_job *job)
+{
+    job->n_models = brc_registry_count();
+    if (job->n_models > BRC_JOB_MAX_MODELS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%d models are registered, %d are allowed", job->n_models,
+                 BRC_JOB_MAX_MODELS);
+    for (int i = 0; i < job->n_models; i++) {
+        job->model_params[i] = brc_alloc(ctx, 1, brc_registry_at(i)->params.owner_size);
+        if (!job->model_params[i])
+            return BRC_ERR_MEMORY;
+    }
+    return 0;
+}
+
+int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
+                 const char *const *overrides, int n)
+{
+    const char *names[N_COMMON + BRC_JOB_MAX_MODELS];
+    struct brc_param_list list;
+    int i = 0;
+    memset(job, 0, sizeof *job);
+    take_name(job, path);
+    BRC_TRY(make_room(ctx, job));
+    BRC_TRY(brc_case_read(ctx, path, &job->file));
+    for (int k = 0; k < n; k++)
+        BRC_TRY(brc_case_override(ctx, &job->file, overrides[k]));
+    for (; brc_job_section(i, &names[i], &list); i++)
+        BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
+    return brc_case_finish(ctx, &job->file, names, (size_t)i);
+}
+
+void brc_job_free(struct brc_job *job)
+{
+    for (int i = 0; i < job->n_models; i++)
+        free(job->model_params[i]);
+    brc_case_free(&job->file);
+    memset(job, 0, sizeof *job);
+}
+
+int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model)
+{
+    char all[400] = "";
+    *model = brc_registry_find(name);
+    if (*model)
+        return 0;
+    for (int i = 0; i < brc_registry_count(); i++) {
+        size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", brc_registry_at(i)->name);
+    }
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "unknown model '%.60s'; there are: %s", name, all);
+}
+
+const void *brc_job_params(const struct brc_job *job, const struct brc_model *model)
+{
+    for (int i = 0; i < job->n_models; i++)
+        if (brc_registry_at(i) == model)
+            return job->model_params[i];
+    return NULL;
+}
+
+/* ---- the parameters as text ---------------------------------------------------------------- */
+
+static char *add_section(struct brc_context *ctx, char *text, const char *section,
+                         struct brc_param_list list, const void *values)
+{
+    char line[LINE_SIZE], value[BRC_TEXT_SIZE];
+    size_t used = text ? strlen(text) : 0;
+    char *grown = brc_realloc(ctx, text, used + (size_t)list.n * LINE_SIZE + 1, 1);
+    if (!grown) {
+        free(text);
+        return NULL;
+    }
+    grown[used] = '\0';
+    for (int i = 0; i < list.n; i++) {
+        brc_params_text(&list.params[i], values, value, sizeof value);
+        int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
+        memcpy(grown + used, line, (size_t)n + 1);
+        used += (size_t)n;
+    }
+    return grown;
+}
+
+char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
+                   const struct brc_model *model)
+{
+    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &job->specimen);
+    if (text)
+        text = add_section(ctx, text, "test", brc_test_param_list, &job->test);
+    if (text)
+        text = add_section(ctx, text, "run", brc_run_param_list, &job->run);
+    if (text)
+        text = add_section(ctx, text, model->name, model->params, brc_job_params(job, model));
+    return text;
+}
+
+/* Keys that may differ between the parts of one run. */
+static bool may_change(const char *line, size_t key_length)
+{
+    static const char *const keys[] = {"test.strain_max", "test.stop_drop", "run.max_steps",
+                                       "run.checkpoint_steps", "specimen.cache"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (strlen(keys[i]) == key_length && strncmp(line, keys[i], key_length) == 0)
+            return true;
+    return false;
+}
+
+int brc_job_same(struct brc_context *ctx, const char *saved, const char *now)
+{
+    while (*saved && *now) {
+        size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
+        bool equal = a == b && strncmp(saved, now, a) == 0;
+        if (!equal && !(may_change(saved, strcspn(saved, " ")) && may_change(now, key)))
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "the saved state was made with '%.*s', the case says '%.*s'; resume with "
+                     "unchanged parameters (--set included) or start anew with --force",
+                     (int)a, saved, (int)b, now);
+        saved += a + (saved[a] != '\0');
+        now += b + (now[b] != '\0');
+    }
+    if (*saved || *now)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "the saved state has other parameters than this version; "
+                 "resume with the version that wrote it");
+    return 0;
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A job: a case file read and judged as a whole, all sections of all models included, so that a
+ * mistake anywhere ends before any work is done. */
+#ifndef BRC_JOB_H
+#define BRC_JOB_H
+
+#include "casefile.h"
+#include "output.h"
+#include "sim.h"
+
+enum { BRC_JOB_MAX_MODELS = 32 };
+
+struct brc_job {
+    struct brc_case file;
+    char name[BRC_CASE_KEY_SIZE * 2]; /* of the case: its file name without folder and ending */
+    struct brc_specimen_params specimen;
+    struct brc_test_params test;
+    struct brc_run_params run;
+    struct brc_output_params output;
+    int n_models;                           /* registered */
+    void *model_params[BRC_JOB_MAX_MODELS]; /* one filled struct a registered model; owned */
+};
+
+/* Reads a case with n overrides "section.key=value". Freed by brc_job_free, also after a failure.
+ */
+int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
+                 const char *const *overrides, int n);
+void brc_job_free(struct brc_job *job);
+/* A registered model by name; an unknown one is an error that lists all. */
+int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model);
+/* The filled parameters of a model. */
+const void *brc_job_params(const struct brc_job *job, const struct brc_model *model);
+/* All parameters that a run's states depend on, one "section.key = value" a line; allocated, to be
+ * freed by the caller, NULL when out of memory. */
+char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
+                   const struct brc_model *model);
+/* Fails when two such texts differ in more than the conditions that end a run, naming the first
+ * key. */
+int brc_job_same(struct brc_context *ctx, const char *saved, const char *now);
+
+/* The sections that every case may have, and those of the models: name and list of number i, false
+ * past the last. */
+bool brc_job_section(int i, const char **name, struct brc_param_list *list);
+
+#endif

@@ -1,0 +1,415 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run.h"
+
+#include "io_h5.h"
+#include "plot.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096, DESCRIPTION_SIZE = 4096 };
+
+/* What a run counts beside its state; goes on when it is resumed. */
+#define RUN_COUNTS(SCALAR, VECTOR)                                           \
+    SCALAR(double, cpu_s, BRC_STATE, "s", "processor time of the step loop") \
+    SCALAR(double, wall_s, BRC_STATE, "s", "elapsed time of the step loop")  \
+    SCALAR(double, contact_steps, BRC_STATE, "1", "contacts with a spring, summed over steps")
+
+#define COUNT_MEMBER(type, name, flags, unit, meaning) type name;
+#define NO_VECTOR(type, name, n, flags, unit, meaning)
+struct counts {
+    RUN_COUNTS(COUNT_MEMBER, NO_VECTOR)
+};
+#define BRC_OWNER struct counts
+static const struct brc_field count_fields[] = {RUN_COUNTS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+struct run {
+    struct brc_context *ctx;
+    const struct brc_run_order *order;
+    struct brc_sim sim;
+    struct counts counts;
+    char *parameters; /* as text, for the state file */
+    FILE *log;
+    size_t n_active; /* contacts with a spring at the last count */
+    double cpu_before, wall_before;
+    const char *ended_by;
+};
+
+/* ---- signals ------------------------------------------------------------------------------- */
+
+static volatile sig_atomic_t stop_signal;
+
+static void note_signal(int number)
+{
+    stop_signal = number;
+}
+
+void brc_run_catch_signals(void)
+{
+    static const int caught[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+    struct sigaction action = {.sa_handler = note_signal};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof caught / sizeof caught[0]; i++)
+        sigaction(caught[i], &action, NULL);
+}
+
+bool brc_run_is_stopped(void)
+{
+    return stop_signal != 0;
+}
+
+/* ---- folder -------------------------------------------------------------------------------- */
+
+static const char *const result_files[] = {"summary.json", "state.h5",   "curve.csv",
+                                           "events.csv",   "broken.csv", "curves.png",
+                                           "cracks.png",   "cracks.plot"};
+enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
+
+static int in_folder(struct brc_context *ctx, const char *dir, const char *name,
+                     char path[PATH_SIZE])
+{
+    if (snprintf(path, PATH_SIZE, "%s/%s", dir, name) >= PATH_SIZE)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
+    return 0;
+}
+
+int brc_run_make_folder(struct brc_context *ctx, const char *path)
+{
+    char part[PATH_SIZE];
+    BRC_TRY(in_folder(ctx, path, "", part));
+    for (char *c = part + 1; *c; c++) {
+        if (*c != '/')
+            continue;
+        *c = '\0';
+        struct stat status;
+        if (mkdir(part, 0777) != 0 && errno != EEXIST)
+            BRC_FAIL(ctx, BRC_ERR_IO, "cannot make the folder %s: %s", part, strerror(errno));
+        if (stat(part, &status) == 0 && !S_ISDIR(status.st_mode))
+            BRC_FAIL(ctx, BRC_ERR_IO, "%s is no folder; choose another with -o", part);
+        *c = '/';
+    }
+    return 0;
+}
+
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(in_folder(ctx, dir, "state.h5", path));
+    bool has_state = access(path, F_OK) == 0;
+    if (is_resumed && !has_state)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s holds no state.h5 to resume; leave out --resume", dir);
+    for (int i = 0; i < N_RESULT_FILES && !is_resumed && !is_forced; i++) {
+        BRC_TRY(in_folder(ctx, dir, result_files[i], path));
+        if (access(path, F_OK) == 0)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s already holds results (%s); go on with --resume, replace them with "
+                     "--force, or choose another folder with -o",
+                     dir, result_files[i]);
+    }
+    return 0;
+}
+
+/* The log is locked while the run lasts, so that no second run writes here. */
+static int open_log(struct run *r)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "log", path));
+    r->log = fopen(path, r->order->is_resumed ? "a" : "a+");
+    if (!r->log)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    if (fcntl(fileno(r->log), F_SETLK, &lock) != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
+                 r->order->dir);
+    if (!r->order->is_resumed && ftruncate(fileno(r->log), 0) != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty %s: %s", path, strerror(errno));
+    return 0;
+}
+
+static int remove_old(struct run *r)
+{
+    char path[PATH_SIZE];
+    for (int i = 0; i < N_RESULT_FILES; i++) {
+        BRC_TRY(in_folder(r->ctx, r->order->dir, result_files[i], path));
+        if (unlink(path) != 0 && errno != ENOENT)
+            BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot remove %s: %s", path, strerror(errno));
+    }
+    return 0;
+}
+
+static void note(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* A line of the log. */
+static void note(struct run *r, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vfprintf(r->log, format, args);
+    va_end(args);
+    fputc('\n', r->log);
+    fflush(r->log);
+}
+
+/* ---- state --------------------------------------------------------------------------------- */
+
+static double cpu_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void take_times(struct run *r)
+{
+    double cpu = cpu_now(), wall = brc_progress_clock();
+    r->counts.cpu_s += cpu - r->cpu_before;
+    r->counts.wall_s += wall - r->wall_before;
+    r->cpu_before = cpu;
+    r->wall_before = wall;
+}
+
+static struct brc_state_part counts_part(struct run *r)
+{
+    return (struct brc_state_part){.path = "run",
+                                   .set = BRC_FIELDSET(count_fields, struct counts),
+                                   .base = &r->counts,
+                                   .n = 1,
+                                   .is_fixed = true};
+}
+
+static int save(struct run *r)
+{
+    char path[PATH_SIZE], seed[32];
+    const struct brc_job *job = r->order->job;
+    take_times(r);
+    snprintf(seed, sizeof seed, "%d", job->specimen.seed);
+    const struct brc_h5_text texts[] = {{"case", brc_case_text(&job->file)},
+                                        {"case_name", job->name},
+                                        {"parameters", r->parameters},
+                                        {"seed", seed}};
+    struct brc_state_part part = counts_part(r);
+    const struct brc_h5_extra extra = {texts, sizeof texts / sizeof texts[0], &part};
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    return brc_h5_save(r->ctx, path, &r->sim, &extra);
+}
+
+static int load(struct run *r)
+{
+    char path[PATH_SIZE], *saved;
+    struct brc_state_part part = counts_part(r);
+    const struct brc_h5_extra extra = {NULL, 0, &part};
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
+    int code = brc_job_same(r->ctx, saved, r->parameters);
+    free(saved);
+    BRC_TRY(code);
+    BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra));
+    note(r, "resumed at step %" PRId64, r->sim.step);
+    return 0;
+}
+
+/* ---- step loop ----------------------------------------------------------------------------- */
+
+static size_t count_active(const struct brc_contacts *c)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < c->n; i++)
+        n += c->k[i][0] > 0;
+    return n;
+}
+
+static void report(struct run *r, bool is_done)
+{
+    const struct brc_rig *rig = &r->sim.rig;
+    double by_strain = rig->strain / rig->params.strain_max;
+    double by_steps = (double)r->sim.step / r->sim.run.max_steps;
+    struct brc_progress_report now = {.fraction = fmin(fmax(by_strain, by_steps), 1),
+                                      .strain = rig->strain,
+                                      .stress = rig->force / rig->section,
+                                      .step = r->sim.step,
+                                      .broken = (int64_t)r->sim.events.table.n,
+                                      .is_done = is_done};
+    brc_progress_update(r->order->progress, r->order->progress_run, &now);
+}
+
+/* Why the run is over, NULL while it is not. */
+static const char *ended_by(const struct brc_sim *sim)
+{
+    if (brc_rig_done(sim))
+        return sim->rig.strain >= sim->rig.params.strain_max ? "test.strain_max" : "test.stop_drop";
+    if (sim->step >= sim->run.max_steps)
+        return "run.max_steps";
+    return brc_run_is_stopped() ? "signal" : NULL;
+}
+
+static int step_loop(struct run *r)
+{
+    struct brc_sim *sim = &r->sim;
+    int every = sim->run.checkpoint_steps;
+    r->cpu_before = cpu_now();
+    r->wall_before = brc_progress_clock();
+    while (!(r->ended_by = ended_by(sim))) {
+        if (r->n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
+            r->n_active = count_active(&sim->pairs) + count_active(&sim->platens);
+        BRC_TRY(brc_sim_step(sim));
+        r->counts.contact_steps += (double)r->n_active;
+        if (brc_progress_is_due(r->order->progress))
+            report(r, false);
+        if (every > 0 && sim->step % every == 0)
+            BRC_TRY(save(r));
+    }
+    return save(r);
+}
+
+/* ---- output -------------------------------------------------------------------------------- */
+
+static void measure(const struct run *r, struct brc_summary *s)
+{
+    const struct brc_sim *sim = &r->sim;
+    const struct brc_job *job = r->order->job;
+    struct brc_result result[BRC_MAX_RESULTS];
+    *s = (struct brc_summary){.seed = job->specimen.seed,
+                              .n_bodies = sim->bodies.n,
+                              .n_facets = sim->specimen->facets.n_facets,
+                              .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
+                              .n_contacts_listed = sim->pairs.n + sim->platens.n,
+                              .steps = sim->step,
+                              .dt = sim->dt,
+                              .cpu_s = r->counts.cpu_s,
+                              .wall_s = r->counts.wall_s,
+                              .energy_residual =
+                                  sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
+                              .unbalanced_max = sim->rig.unbalanced_max,
+                              .state_hash = brc_sim_hash(sim)};
+    snprintf(s->model, sizeof s->model, "%s", sim->model.name);
+    snprintf(s->title, sizeof s->title, "%s", job->file.head.title);
+    snprintf(s->case_name, sizeof s->case_name, "%s", job->name);
+    snprintf(s->ended_by, sizeof s->ended_by, "%s", r->ended_by ? r->ended_by : "failure");
+    s->is_finished = strncmp(s->ended_by, "test.", 5) == 0;
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        s->n_points += (size_t)sim->pairs.np[i];
+    for (size_t i = 0; i < sim->platens.n; i++)
+        s->n_points += (size_t)sim->platens.np[i];
+    s->n_contacts_mean = r->counts.contact_steps / (double)sim->step;
+    s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
+    s->n_results = brc_rig_results(sim, result);
+    for (int i = 0; i < s->n_results; i++)
+        s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit};
+}
+
+static int write_tables(struct run *r)
+{
+    char path[PATH_SIZE];
+    const char *dir = r->order->dir;
+    BRC_TRY(in_folder(r->ctx, dir, "curve.csv", path));
+    BRC_TRY(brc_output_csv(r->ctx, path, &r->sim.rig.curve.table));
+    BRC_TRY(in_folder(r->ctx, dir, "events.csv", path));
+    return brc_output_csv(r->ctx, path, &r->sim.events.table);
+}
+
+static int draw(struct run *r)
+{
+    const struct brc_job *job = r->order->job;
+    struct brc_plot_runs runs = {.title = job->file.head.title,
+                                 .test = (enum brc_test)job->test.kind,
+                                 .n = 1,
+                                 .label = {r->sim.model.name},
+                                 .folder = {"."}};
+    BRC_TRY(brc_plot_broken(r->ctx, r->order->dir, &r->sim));
+    BRC_TRY(brc_plot_cracks(r->ctx, r->order->dir, &r->sim, &job->output));
+    return job->output.plots ? brc_plot_draw(r->ctx, r->order->dir, &runs, &job->output) : 0;
+}
+
+static int write_results(struct run *r, struct brc_summary *out)
+{
+    char path[PATH_SIZE];
+    measure(r, out);
+    BRC_TRY(write_tables(r));
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "summary.json", path));
+    BRC_TRY(brc_output_summary(r->ctx, path, out));
+    note(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by, out->steps,
+         out->state_hash);
+    return draw(r);
+}
+
+/* ---- one run ------------------------------------------------------------------------------- */
+
+static void note_header(struct run *r)
+{
+    char description[DESCRIPTION_SIZE] = "";
+    const struct brc_facets *f = &r->order->specimen->facets;
+    r->sim.model.describe(&r->sim, r->sim.state, description, sizeof description);
+    note(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__, r->order->job->name);
+    note(r, "model %s: %s", r->sim.model.name, r->sim.model.citation);
+    if (*description)
+        note(r, "%s", description);
+    note(r, "%zu grains, %zu facets, %zu pairs, %zu platen contacts", f->n_cells, f->n_facets,
+         r->sim.pairs.n, r->sim.platens.n);
+    note(r, "%s", r->parameters);
+}
+
+static int prepare(struct run *r)
+{
+    const struct brc_run_order *o = r->order;
+    char path[PATH_SIZE];
+    BRC_TRY(brc_run_check_folder(r->ctx, o->dir, o->is_resumed, o->is_forced));
+    BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
+    BRC_TRY(open_log(r));
+    r->parameters = brc_job_text(r->ctx, o->job, o->model);
+    if (!r->parameters)
+        return BRC_ERR_MEMORY;
+    BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_job_params(o->job, o->model), o->specimen,
+                           &o->job->test, &o->job->run));
+    note_header(r);
+    if (o->is_resumed)
+        return load(r);
+    BRC_TRY(remove_old(r));
+    BRC_TRY(in_folder(r->ctx, o->dir, "case.yaml", path));
+    return brc_output_text(r->ctx, path, brc_case_text(&o->job->file));
+}
+
+/* After a failure the curves so far are kept for a look; the last saved state stays. */
+static void keep_traces(struct run *r)
+{
+    struct brc_context quiet = BRC_CONTEXT_INIT, *ctx = r->ctx;
+    note(r, "failed at step %" PRId64 ": %s", r->sim.step, ctx->message);
+    r->ctx = &quiet;
+    if (write_tables(r) != 0)
+        note(r, "the curves could not be written either: %s", quiet.message);
+    r->ctx = ctx;
+}
+
+int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out)
+{
+    struct run r = {.ctx = ctx, .order = order};
+    int code = prepare(&r);
+    if (code == 0) {
+        report(&r, false);
+        code = step_loop(&r);
+        if (code != 0)
+            keep_traces(&r);
+        else
+            code = write_results(&r, out);
+        report(&r, true);
+    }
+    if (code == 0 && brc_run_is_stopped())
+        code = brc_error_set(ctx, BRC_ERR_INTERRUPTED, __FILE__, __LINE__,
+                             "interrupted at step %" PRId64 "; the state is saved in %s",
+                             r.sim.step, order->dir);
+    brc_sim_free(&r.sim);
+    free(r.parameters);
+    if (r.log)
+        fclose(r.log);
+    return code;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One run: a model on a specimen through a test, from the case to the files in its folder. */
+#ifndef BRC_RUN_H
+#define BRC_RUN_H
+
+#include "job.h"
+#include "progress.h"
+
+struct brc_run_order {
+    const struct brc_job *job;
+    const struct brc_model *model;
+    const struct brc_specimen *specimen;
+    const char *dir; /* where results go; made when it is missing */
+    bool is_resumed; /* go on from dir/state.h5 */
+    bool is_forced;  /* replace results that are there */
+    struct brc_progress *progress;
+    int progress_run; /* number of this run's line */
+};
+
+/* Runs to the end of the test. Writes to dir: case.yaml, log, state.h5, curve.csv, events.csv,
+ * broken.csv, summary.json, and the plots. A signal that was caught saves the state and ends in
+ * BRC_ERR_INTERRUPTED; curves are written after any failure of a started run. */
+int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out);
+
+/* Fails when dir holds results and neither is_resumed nor is_forced allows it. */
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced);
+/* SIGINT, SIGTERM, SIGHUP and a lost reader end all runs of the process after the present step. */
+void brc_run_catch_signals(void);
+bool brc_run_is_stopped(void);
+/* Makes a folder and those above it. */
+int brc_run_make_folder(struct brc_context *ctx, const char *path);
+
+#endif
