@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Energy and springs recomputed from the state alone. */
+#include "vgcm/contact.h"
+
+/* State of point j of a row, with its normal force [N]. */
+static struct vgcm_point point_of(const struct vgcm_points *p, const struct vgcm_bond *bond,
+                                  size_t j, int flags)
+{
+    struct vgcm_point q = {p->un[j], 0, p->fs[j], p->ft[j], p->dn[j], p->ds[j], p->lost[j]};
+    q.fn = p->area[j] * vgcm_law_normal(bond, flags, &q, vgcm_law_damage(&q));
+    return q;
+}
+
+static double shear_energy(const struct vgcm_bond *bond, double area, const struct vgcm_point *q)
+{
+    double k = bond->ks * area;
+    return k > 0 ? (q->fs * q->fs + q->ft * q->ft) / (2 * k) : 0;
+}
+
+static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                     double stored[3])
+{
+    const struct brc_contacts *c = &sim->pairs;
+    const struct vgcm_contacts *f = vgcm_columns(c);
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
+    int flags = law->is_brittle ? VGCM_BRITTLE : 0;
+    if (f->phase[i] == VGCM_AFFINE) {
+        double sum[VGCM_N_MOTION];
+        vgcm_force_affine(sum, bond.kn, bond.ks, f->moment[i], f->u[i]);
+        stored[0] += 0.5 * vgcm_force_work(sum, f->u[i]);
+        return;
+    }
+    for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
+        struct vgcm_point q = point_of(p, &bond, j, flags);
+        if (f->phase[i] == VGCM_SPHERE)
+            q.fn = fmin(bond.kn * p->area[j] * c->gap[i], 0), q.un = c->gap[i], q.dn = 1;
+        bool is_bond = vgcm_law_damage(&q) < 1;
+        double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->area[j], &q);
+        stored[is_bond ? 0 : 1] += normal;
+        stored[is_bond ? 0 : 2] += shear;
+    }
+}
+
+static void add_wall(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                     double stored[3])
+{
+    const struct brc_contacts *c = &sim->platens;
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    bool is_grip = brc_sim_platen(sim, c->b[i])->grip != BRC_GRIP_NONE;
+    double kn = vgcm_columns(c)->kn[i];
+    struct vgcm_bond bond = {.law = law, .kn = kn, .ks = law->eta * kn};
+    for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
+        struct vgcm_point q = {.un = p->un[j], .fs = p->fs[j], .ft = p->ft[j]};
+        if (is_grip || q.un < 0)
+            stored[1] += 0.5 * kn * p->area[j] * q.un * q.un;
+        stored[2] += shear_energy(&bond, p->area[j], &q);
+    }
+}
+
+void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3])
+{
+    brc_set(stored, 0, 0, 0);
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        add_pair(sim, law, i, stored);
+    for (size_t i = 0; i < sim->platens.n; i++)
+        add_wall(sim, law, i, stored);
+}
+
+/* Springs of the points of a pair. */
+static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                     struct brc_springs *out)
+{
+    const struct brc_contacts *c = &sim->pairs;
+    const struct vgcm_contacts *f = vgcm_columns(c);
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    struct vgcm_motion m;
+    if (c->k[i][0] == 0)
+        return 0;
+    vgcm_motion_of(&sim->bodies, c, i, 0, &m);
+    struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
+    brc_copy(spring.n, m.n);
+    double u0 = law->sigma_t / f->kn[i];
+    for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
+        if (p->dn[j] + p->ds[j] >= 1 && p->un[j] >= u0)
+            continue;
+        brc_scale(spring.ra, m.n, m.h);
+        brc_axpy(spring.ra, p->s[j], m.s);
+        brc_axpy(spring.ra, p->t[j], m.t);
+        brc_copy(spring.rb, spring.ra);
+        brc_axpy(spring.rb, -m.d, m.n);
+        spring.kn = f->kn[i] * p->area[j];
+        spring.ks = law->eta * spring.kn;
+        BRC_TRY(brc_springs_add(sim->ctx, out, &spring));
+    }
+    return 0;
+}
+
+static int list_wall(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                     struct brc_springs *out)
+{
+    const struct brc_contacts *c = &sim->platens;
+    const struct vgcm_contacts *f = vgcm_columns(c);
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    const struct brc_platen *platen = brc_sim_platen(sim, c->b[i]);
+    struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
+    double t[3], u0 = law->sigma_t / f->kn[i];
+    brc_cross(t, f->n[i], f->s[i]);
+    brc_scale(spring.n, platen->n, -1);
+    for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
+        if (platen->grip == BRC_GRIP_NONE && p->un[j] >= u0)
+            continue;
+        brc_scale(spring.ra, f->n[i], p->h[j]);
+        if (f->phase[i] == VGCM_SPHERE)
+            brc_scale(spring.ra, f->n[i], p->un[j] + f->rest[i]);
+        brc_axpy(spring.ra, p->s[j], f->s[i]);
+        brc_axpy(spring.ra, p->t[j], t);
+        spring.kn = f->kn[i] * p->area[j];
+        spring.ks = platen->grip == BRC_GRIP_AXIAL ? 0 : law->eta * spring.kn;
+        BRC_TRY(brc_springs_add(sim->ctx, out, &spring));
+    }
+    return 0;
+}
+
+int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
+                      struct brc_springs *out)
+{
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        BRC_TRY(list_pair(sim, law, i, out));
+    for (size_t i = 0; i < sim->platens.n; i++)
+        BRC_TRY(list_wall(sim, law, i, out));
+    return 0;
+}

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table of the VGCM-3D model. */
+#include "vgcm/vgcm.h"
+
+#include "common/vec.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BRC_OWNER struct vgcm_params
+static const struct brc_param params[] = {BRC_PARAM_LIST(VGCM_PARAMS)};
+#undef BRC_OWNER
+#define BRC_OWNER struct vgcm_bodies
+static const struct brc_field body_fields[] = {VGCM_BODY_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+#define BRC_OWNER struct vgcm_contacts
+static const struct brc_field contact_fields[] = {VGCM_CONTACT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+#define BRC_OWNER struct vgcm_points
+static const struct brc_field point_fields[] = {VGCM_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *p)
+{
+    *law = (struct vgcm_law){.e_bar = p->e_bar,
+                             .eta = p->eta,
+                             .mu = p->mu,
+                             .sigma_t = p->sigma_t,
+                             .tau = p->tau,
+                             .g_fn = p->g_fn,
+                             .g_fs = p->g_fs,
+                             .is_brittle = p->softening == VGCM_SOFTENING_NONE,
+                             .is_post_peak = p->energies == VGCM_ENERGIES_POST_PEAK,
+                             .viscous = p->viscous};
+    if (p->softening == VGCM_SOFTENING_BILINEAR)
+        vgcm_law_softening(law, p->softening_beta, p->softening_w1);
+    else
+        vgcm_law_softening(law, 0.5, 1); /* a straight line */
+}
+
+/* The softening branch of every contact must fall to the right: no snap-back. */
+static int check_energy(struct brc_context *ctx, const char *name, double given, double elastic,
+                        double distance)
+{
+    if (given > elastic)
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "vgcm.%s = %g J/m2 must be above %g J/m2, the elastic energy at the peak strength of "
+             "the contact whose centres are %g m apart (strength^2 distance / (2 modulus)): raise "
+             "it, lower the strength, or choose softening: none or energies: post_peak",
+             name, given, elastic, distance);
+}
+
+static int check(struct brc_context *ctx, const void *values, const struct brc_specimen *specimen)
+{
+    const struct vgcm_params *p = values;
+    struct vgcm_census census;
+    struct vgcm_law law;
+    vgcm_law_of(&law, p);
+    vgcm_census_take(&census, p, &specimen->facets);
+    if (census.n_inner > 0 && census.n_contacts == 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "vgcm.interaction leaves none of the %zu facets as contacts: raise "
+                 "interaction_gap (now %g m), lower interaction_area, or choose interaction: all",
+                 census.n_inner, census.gap);
+    if (p->tau < p->mu * p->sigma_t)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "vgcm.tau = %g Pa must be at least mu sigma_t = %g Pa, or a point in tension "
+                 "would have no shear strength left",
+                 p->tau, p->mu * p->sigma_t);
+    if (p->softening == VGCM_SOFTENING_BILINEAR && law.kink >= 1)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "vgcm.softening_w1 = %g puts the kink behind the end of softening at (2 - "
+                 "w1)/beta = %g: lower softening_w1 or softening_beta",
+                 p->softening_w1, law.wc);
+    if (law.is_brittle || law.is_post_peak || census.n_contacts == 0)
+        return 0;
+    double kn = law.e_bar / census.largest_distance;
+    BRC_TRY(
+        check_energy(ctx, "g_fn", p->g_fn, vgcm_law_elastic_n(&law, kn), census.largest_distance));
+    return check_energy(ctx, "g_fs", p->g_fs, vgcm_law_elastic_s(&law, kn),
+                        census.largest_distance);
+}
+
+static int create(struct brc_sim *sim, void **state)
+{
+    struct vgcm_state *own = brc_alloc(sim->ctx, 1, sizeof *own);
+    if (!own)
+        return BRC_ERR_MEMORY;
+    vgcm_law_of(&own->law, sim->params);
+    *state = own;
+    return 0;
+}
+
+static void free_state(void *state)
+{
+    free(state);
+}
+
+/* Spheres at their centres, with the mass of the whole cell. */
+static int shape(struct brc_sim *sim, void *state)
+{
+    const struct vgcm_params *p = sim->params;
+    const struct brc_facets *facets = &sim->specimen->facets;
+    struct brc_bodies *b = &sim->bodies;
+    struct vgcm_bodies *columns = b->model_columns;
+    (void)state;
+    for (size_t i = 0; i < facets->n_cells; i++) {
+        double mass = p->density * facets->volume[i];
+        double r2 = pow(3 * facets->volume[i] / (4 * BRC_PI), 2.0 / 3), reach2 = 0;
+        columns->radius[i] = vgcm_radius(facets, i);
+        brc_copy(b->x[i], facets->seed[i]);
+        b->q[i][0] = 1;
+        b->volume[i] = facets->volume[i];
+        b->true_mass[i] = mass;
+        brc_set(b->true_inertia[i], 0.4 * mass * r2, 0.4 * mass * r2, 0.4 * mass * r2);
+        for (size_t k = facets->cell_first[i]; k < facets->cell_first[i + 1]; k++) {
+            size_t facet = (size_t)facets->cell_facet[k];
+            for (size_t v = facets->first[facet]; v < facets->first[facet + 1]; v++) {
+                double r[3];
+                brc_sub(r, facets->vertex[facets->loop[v]], b->x[i]);
+                reach2 = fmax(reach2, brc_norm2(r));
+            }
+        }
+        b->reach[i] = fmax(sqrt(reach2), columns->radius[i]);
+    }
+    return 0;
+}
+
+static int bond(struct brc_sim *sim, void *state)
+{
+    const struct vgcm_state *own = state;
+    return vgcm_bond_rows(sim, &own->law);
+}
+
+static int pairs(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
+                 const struct brc_candidates *platens)
+{
+    const struct vgcm_state *own = state;
+    return vgcm_pair_rows(sim, &own->law, grains, platens);
+}
+
+static void select_loops(struct brc_sim *sim, void *state)
+{
+    struct vgcm_state *own = state;
+    vgcm_law_of(&own->law, sim->params);
+    own->flags = (own->law.is_brittle ? VGCM_BRITTLE : 0) | (sim->run.ledger ? VGCM_LEDGER : 0) |
+                 (own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC ? VGCM_VISCOUS : 0);
+    own->forces = vgcm_forces_loops[own->flags];
+}
+
+static void forces(struct brc_sim *sim, void *state)
+{
+    const struct vgcm_state *own = state;
+    own->forces(sim, &own->law);
+}
+
+static void walls(struct brc_sim *sim, void *state)
+{
+    const struct vgcm_state *own = state;
+    vgcm_walls(sim, &own->law, own->flags);
+}
+
+static void energy(const struct brc_sim *sim, const void *state, double stored[3])
+{
+    const struct vgcm_state *own = state;
+    vgcm_energy_stored(sim, &own->law, stored);
+}
+
+static int springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
+{
+    const struct vgcm_state *own = state;
+    return vgcm_springs_list(sim, &own->law, out);
+}
+
+static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
+{
+    static const char *const rule[] = {"gap", "all", "area"};
+    static const char *const softening[] = {"none (brittle)", "linear", "bilinear"};
+    static const char *const points[] = {"paper", "exact", "one"};
+    const struct vgcm_state *own = state;
+    const struct vgcm_params *p = sim->params;
+    struct vgcm_census census;
+    vgcm_census_take(&census, p, &sim->specimen->facets);
+    double kn = census.mean_distance > 0 ? p->e_bar / census.mean_distance : 0, eta = p->eta;
+    snprintf(text, size,
+             "interaction %s: %zu of %zu inner facets, mean centre distance %.4g mm (gap %.4g mm); "
+             "points %s; softening %s; elastic energy at the peak, mean distance: %.4g J/m2 in "
+             "tension, %.4g J/m2 in shear; uniform-strain estimate for all facets: E = %.4g GPa, "
+             "nu = %.3g",
+             rule[p->interaction], census.n_contacts, census.n_inner, 1e3 * census.mean_distance,
+             1e3 * census.gap, points[p->points], softening[p->softening],
+             kn > 0 ? vgcm_law_elastic_n(&own->law, kn) : 0,
+             kn > 0 ? vgcm_law_elastic_s(&own->law, kn) : 0,
+             1e-9 * p->e_bar * (2 + 3 * eta) / (4 + eta), (1 - eta) / (4 + eta));
+}
+
+const struct brc_model brc_model_vgcm = {
+    .name = "vgcm",
+    .citation = "M. Candeias, N. Monteiro Azevedo, M. L. Braga Farinha: VGCM3D - A 3D rigid "
+                "particle model for rock fracture following the Voronoi tessellation of the grain "
+                "structure: formulation and validation",
+    .params = BRC_PARAMS(params, struct vgcm_params),
+    .body_fields = BRC_FIELDSET(body_fields, struct vgcm_bodies),
+    .contact_fields = BRC_FIELDSET(contact_fields, struct vgcm_contacts),
+    .point_fields = BRC_FIELDSET(point_fields, struct vgcm_points),
+    .flags = BRC_MODEL_ROTATES,
+    .shape = shape,
+    .bond = bond,
+    .pairs = pairs,
+    .forces = forces,
+    .walls = walls,
+    .energy = energy,
+    .springs = springs,
+    .check = check,
+    .create = create,
+    .free = free_state,
+    .select = select_loops,
+    .describe = describe};

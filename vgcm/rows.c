@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which pairs interact, and the rows of new contacts. */
+#include "vgcm/vgcm.h"
+
+#include "common/vec.h"
+#include "vgcm/points.h"
+
+#include <stdlib.h>
+
+/* A boundary facet faces a platen when its normal is within 30 degrees of the platen's. */
+static const double FACING = 0.86602540378443864676;
+/* Smallest distance from a platen that its stiffness counts with, in radii of the grain's volume:
+ * a Voronoi seed may lie on the platen itself. */
+static const double LEAST_DISTANCE = 0.1;
+
+static double volume_radius(double volume)
+{
+    return cbrt(3 * volume / (4 * BRC_PI));
+}
+
+double vgcm_radius(const struct brc_facets *facets, size_t cell)
+{
+    double r = facets->radius[cell];
+    return r > 0 ? r : volume_radius(facets->volume[cell]);
+}
+
+static double centre_distance(const struct brc_facets *facets, size_t facet)
+{
+    double branch[3];
+    brc_sub(branch, facets->seed[facets->cell[facet][1]], facets->seed[facets->cell[facet][0]]);
+    return brc_norm(branch);
+}
+
+static bool is_inner(const struct brc_facets *facets, size_t facet)
+{
+    return facets->cell[facet][1] >= 0;
+}
+
+static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params *params,
+                      const struct brc_facets *facets, size_t facet)
+{
+    if (!is_inner(facets, facet) || !facets->is_contact[facet])
+        return false;
+    if (params->interaction == VGCM_INTERACTION_ALL)
+        return true;
+    if (params->interaction == VGCM_INTERACTION_AREA)
+        return facets->area[facet] >= census->smallest_area;
+    double ra = vgcm_radius(facets, (size_t)facets->cell[facet][0]);
+    double rb = vgcm_radius(facets, (size_t)facets->cell[facet][1]);
+    return centre_distance(facets, facet) < ra + rb + census->gap;
+}
+
+void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
+                      const struct brc_facets *facets)
+{
+    double diameters = 0, area = 0, sum = 0;
+    *census = (struct vgcm_census){0};
+    for (size_t i = 0; i < facets->n_cells; i++)
+        diameters += 2 * vgcm_radius(facets, i);
+    for (size_t i = 0; i < facets->n_facets; i++) {
+        if (!is_inner(facets, i))
+            continue;
+        census->n_inner++;
+        area += facets->area[i];
+    }
+    census->gap = params->interaction_gap > 0
+                      ? params->interaction_gap
+                      : params->interaction_gap_ratio * diameters / (double)facets->n_cells;
+    if (census->n_inner > 0)
+        census->smallest_area = params->interaction_area * area / (double)census->n_inner;
+    for (size_t i = 0; i < facets->n_facets; i++) {
+        if (!is_bonded(census, params, facets, i))
+            continue;
+        double d = centre_distance(facets, i);
+        census->n_contacts++;
+        census->largest_distance = fmax(census->largest_distance, d);
+        sum += d;
+    }
+    if (census->n_contacts > 0)
+        census->mean_distance = sum / (double)census->n_contacts;
+}
+
+/* Adds the facet's points to row i, at their places (s, t, h) in the row's frame about origin. */
+static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, size_t facet,
+                      const double origin[3])
+{
+    const struct vgcm_params *params = sim->params;
+    const struct brc_facets *facets = &sim->specimen->facets;
+    size_t n_vertices = facets->first[facet + 1] - facets->first[facet];
+    enum vgcm_points_rule rule = (enum vgcm_points_rule)params->points;
+    int32_t n = vgcm_points_count(rule, n_vertices), old = c->np[i];
+    double(*x)[3] = brc_alloc(sim->ctx, (size_t)n, sizeof *x);
+    double *area = brc_alloc(sim->ctx, (size_t)n, sizeof *area);
+    int code = x && area ? brc_contacts_points(sim->ctx, c, i, old + n) : BRC_ERR_MEMORY;
+    if (code == 0) {
+        const struct vgcm_contacts *f = vgcm_columns(c);
+        const struct vgcm_points *p = vgcm_point_columns(c);
+        double t[3], r[3];
+        vgcm_points_place(rule, facets, facet, x, area);
+        brc_cross(t, f->n[i], f->s[i]);
+        for (size_t j = 0; j < (size_t)n; j++) {
+            size_t to = (size_t)(c->p0[i] + old) + j;
+            brc_sub(r, x[j], origin);
+            p->s[to] = brc_dot(r, f->s[i]);
+            p->t[to] = brc_dot(r, t);
+            p->h[to] = brc_dot(r, f->n[i]);
+            p->area[to] = area[j];
+        }
+    }
+    free(x);
+    free(area);
+    return code;
+}
+
+/* Area moments and rim of a row from its points. */
+static void set_moments(struct brc_contacts *c, size_t i)
+{
+    struct vgcm_contacts *f = vgcm_columns(c);
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    double *m = f->moment[i], rim2 = 0;
+    for (int k = 0; k < VGCM_N_MOMENTS; k++)
+        m[k] = 0;
+    for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
+        double area = p->area[j], s = p->s[j], t = p->t[j];
+        m[VGCM_A] += area;
+        m[VGCM_A_S] += area * s;
+        m[VGCM_A_T] += area * t;
+        m[VGCM_A_SS] += area * s * s;
+        m[VGCM_A_ST] += area * s * t;
+        m[VGCM_A_TT] += area * t * t;
+        rim2 = fmax(rim2, s * s + t * t);
+    }
+    f->rim[i] = sqrt(rim2);
+}
+
+static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, size_t facet)
+{
+    struct brc_contacts *c = &sim->pairs;
+    const struct brc_bodies *b = &sim->bodies;
+    struct vgcm_contacts *f = vgcm_columns(c);
+    double branch[3], t[3], to_facet[3], origin[3];
+    const double *xa = b->x[c->a[i]];
+    brc_sub(branch, b->x[c->b[i]], xa);
+    double d = brc_normalise(f->n[i], branch);
+    brc_frame(f->s[i], t, f->n[i]);
+    brc_sub(to_facet, sim->specimen->facets.centroid[facet], xa);
+    double h = brc_dot(to_facet, f->n[i]);
+    brc_copy(origin, xa);
+    brc_axpy(origin, h, f->n[i]);
+    c->facet[i] = (int32_t)facet;
+    c->status[i] = BRC_INTACT;
+    f->phase[i] = VGCM_AFFINE;
+    f->kn[i] = law->e_bar / d; /* eq:vgcm:28 */
+    f->plane[i] = h - d / 2;   /* (R_a - R_b)/2 - d_v; eq:vgcm:8 */
+    BRC_TRY(add_points(sim, c, i, facet, origin));
+    set_moments(c, i);
+    const double *m = f->moment[i];
+    double k = f->kn[i] * fmax(1, law->eta), g = d - h, polar = m[VGCM_A_SS] + m[VGCM_A_TT];
+    brc_set(c->k[i], k * m[VGCM_A], k * (m[VGCM_A] * h * h + polar),
+            k * (m[VGCM_A] * g * g + polar));
+    return 0;
+}
+
+static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
+{
+    const struct brc_facets *facets = &sim->specimen->facets;
+    struct vgcm_census census;
+    vgcm_census_take(&census, sim->params, facets);
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, census.n_contacts, sizeof *pair);
+    size_t *facet = brc_alloc(sim->ctx, census.n_contacts, sizeof *facet), n = 0;
+    int code = pair && facet ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < facets->n_facets; i++) {
+        if (!is_bonded(&census, sim->params, facets, i))
+            continue;
+        pair[n][0] = facets->cell[i][0];
+        pair[n][1] = facets->cell[i][1];
+        facet[n++] = i;
+    }
+    if (code == 0)
+        code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
+    for (size_t i = 0; code == 0 && i < n; i++)
+        code = bond_row(sim, law, i, facet[i]);
+    free(pair);
+    free(facet);
+    return code;
+}
+
+static bool is_facing(const struct brc_facets *facets, size_t facet,
+                      const struct brc_platen *platen)
+{
+    return !is_inner(facets, facet) && brc_dot(facets->normal[facet], platen->n) < -FACING;
+}
+
+static double height_of(const struct brc_bodies *b, size_t body, const struct brc_platen *platen)
+{
+    double r[3];
+    brc_sub(r, b->x[body], b->x[platen->body]);
+    return brc_dot(r, platen->n);
+}
+
+static double offset_of(const struct brc_bodies *b, const double x[3],
+                        const struct brc_platen *platen)
+{
+    double r[3];
+    brc_sub(r, x, b->x[platen->body]);
+    return fabs(brc_dot(r, platen->across));
+}
+
+/* Drops the points outside the platen's width and grips the rest on its plane. */
+static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *platen, double above)
+{
+    struct brc_contacts *c = &sim->platens;
+    const struct vgcm_contacts *f = vgcm_columns(c);
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    size_t to = (size_t)c->p0[i], end = to + (size_t)c->np[i];
+    double t[3], x[3];
+    brc_cross(t, f->n[i], f->s[i]);
+    for (size_t j = to; j < end; j++) {
+        brc_copy(x, sim->bodies.x[c->a[i]]);
+        brc_axpy(x, p->s[j], f->s[i]);
+        brc_axpy(x, p->t[j], t);
+        if (offset_of(&sim->bodies, x, platen) > platen->half_width)
+            continue;
+        p->s[to] = p->s[j];
+        p->t[to] = p->t[j];
+        p->h[to] = platen->grip == BRC_GRIP_NONE ? p->h[j] : above;
+        p->area[to++] = p->area[j];
+    }
+    c->np[i] = (int32_t)(to - (size_t)c->p0[i]);
+}
+
+static int wall_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
+{
+    struct brc_contacts *c = &sim->platens;
+    struct vgcm_contacts *f = vgcm_columns(c);
+    const struct brc_facets *facets = &sim->specimen->facets;
+    const struct brc_platen *platen = brc_sim_platen(sim, c->b[i]);
+    size_t cell = (size_t)c->a[i];
+    double above = height_of(&sim->bodies, cell, platen);
+    double least = LEAST_DISTANCE * volume_radius(facets->volume[cell]);
+    brc_scale(f->n[i], platen->n, -1);
+    brc_copy(f->s[i], platen->across);
+    f->phase[i] = VGCM_POINTS;
+    f->kn[i] = law->e_bar / fmax(above, least); /* eq:vgcm:28 */
+    for (size_t k = facets->cell_first[cell]; k < facets->cell_first[cell + 1]; k++)
+        if (is_facing(facets, (size_t)facets->cell_facet[k], platen))
+            BRC_TRY(add_points(sim, c, i, (size_t)facets->cell_facet[k], sim->bodies.x[cell]));
+    fit_points(sim, i, platen, above);
+    set_moments(c, i);
+    return 0;
+}
+
+/* Rows of all grains with a facet that faces a platen; NULL: counts them. */
+static size_t facing_pairs(const struct brc_sim *sim, int32_t (*pair)[2])
+{
+    const struct brc_facets *facets = &sim->specimen->facets;
+    size_t n = 0;
+    for (size_t cell = 0; cell < facets->n_cells; cell++) {
+        for (int p = 0; p < sim->rig.n_platens; p++) {
+            bool faces = false;
+            for (size_t k = facets->cell_first[cell]; k < facets->cell_first[cell + 1]; k++)
+                faces |= is_facing(facets, (size_t)facets->cell_facet[k], &sim->rig.platen[p]);
+            if (faces && pair) {
+                pair[n][0] = (int32_t)cell;
+                pair[n][1] = sim->rig.platen[p].body;
+            }
+            n += faces;
+        }
+    }
+    return n;
+}
+
+int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law)
+{
+    BRC_TRY(bond_pairs(sim, law));
+    size_t n = facing_pairs(sim, NULL);
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, n, sizeof *pair);
+    if (!pair)
+        return BRC_ERR_MEMORY;
+    facing_pairs(sim, pair);
+    int code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
+    for (size_t i = 0; code == 0 && i < n; i++)
+        code = wall_row(sim, law, i);
+    free(pair);
+    BRC_TRY(code);
+    BRC_TRY(brc_contacts_compact(sim->ctx, &sim->pairs));
+    return brc_contacts_compact(sim->ctx, &sim->platens);
+}
+
+/* Distance at which the spheres of a pair, or a sphere and a platen, begin to touch. */
+static double touching_distance(const struct brc_sim *sim, const int32_t pair[2], double *now)
+{
+    const struct vgcm_bodies *columns = sim->bodies.model_columns;
+    double touch = columns->radius[pair[0]], branch[3];
+    if ((size_t)pair[1] >= sim->bodies.n_grains) {
+        *now = height_of(&sim->bodies, (size_t)pair[0], brc_sim_platen(sim, pair[1]));
+        return touch;
+    }
+    brc_sub(branch, sim->bodies.x[pair[1]], sim->bodies.x[pair[0]]);
+    *now = brc_norm(branch);
+    return touch + columns->radius[pair[1]];
+}
+
+/* Whether an existing row stays although the candidates no longer name it. */
+static bool must_stay(const struct brc_contacts *c, size_t row, bool is_wall)
+{
+    bool is_facet = vgcm_columns(c)->phase[row] != VGCM_SPHERE;
+    return (is_facet && is_wall) || c->status[row] == BRC_INTACT || brc_norm2(c->f[row]) > 0;
+}
+
+static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
+{
+    double now, touch = touching_distance(sim, pair, &now);
+    if ((size_t)pair[1] >= sim->bodies.n_grains) {
+        const struct brc_platen *platen = brc_sim_platen(sim, pair[1]);
+        if (offset_of(&sim->bodies, sim->bodies.x[pair[0]], platen) > platen->half_width)
+            return false;
+    }
+    return now < touch + sim->skin;
+}
+
+/* Sorted union of the rows that stay and the candidates that may touch. */
+static size_t merge_rows(const struct brc_sim *sim, const struct brc_contacts *c,
+                         const struct brc_candidates *list, int32_t (*pair)[2])
+{
+    bool is_wall = c == &sim->platens;
+    size_t n = 0, row = 0, k = 0;
+    while (row < c->n || k < list->n) {
+        int64_t of_row = INT64_MAX, of_list = INT64_MAX;
+        if (row < c->n)
+            of_row = ((int64_t)c->a[row] << 32) | c->b[row];
+        if (k < list->n)
+            of_list = ((int64_t)list->pair[k][0] << 32) | list->pair[k][1];
+        int32_t next[2] = {(int32_t)((of_row < of_list ? of_row : of_list) >> 32),
+                           (int32_t)(of_row < of_list ? of_row : of_list)};
+        bool has_row = of_row <= of_list, is_listed = of_list <= of_row;
+        bool keep = has_row && must_stay(c, row, is_wall);
+        if (!keep && is_listed)
+            keep = (has_row && c->status[row] == BRC_BROKEN) || may_open(sim, next);
+        if (keep) {
+            pair[n][0] = next[0];
+            pair[n++][1] = next[1];
+        }
+        row += has_row;
+        k += is_listed;
+    }
+    return n;
+}
+
+/* The one point of a new sphere contact, force-free as it is now. */
+static int sphere_row(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
+                      size_t i)
+{
+    const struct vgcm_bodies *columns = sim->bodies.model_columns;
+    bool is_wall = c == &sim->platens;
+    BRC_TRY(brc_contacts_points(sim->ctx, c, i, 1));
+    struct vgcm_contacts *f = vgcm_columns(c);
+    struct vgcm_points *p = vgcm_point_columns(c);
+    const int32_t pair[2] = {c->a[i], c->b[i]};
+    double now, touch = touching_distance(sim, pair, &now);
+    double ra = columns->radius[pair[0]], rb = is_wall ? ra : columns->radius[pair[1]];
+    f->phase[i] = VGCM_SPHERE;
+    f->kn[i] = law->e_bar / touch; /* eq:vgcm:28 */
+    f->plane[i] = (ra - rb) / 2;
+    f->rest[i] = fmin(touch, now);
+    c->gap[i] = fmax(now - touch, 0);
+    p->area[c->p0[i]] = BRC_PI * fmin(ra, rb) * fmin(ra, rb);
+    if (is_wall) {
+        const struct brc_platen *platen = brc_sim_platen(sim, pair[1]);
+        brc_scale(f->n[i], platen->n, -1);
+        brc_copy(f->s[i], platen->across);
+    }
+    set_moments(c, i);
+    return 0;
+}
+
+static int update_rows(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
+                       const struct brc_candidates *list)
+{
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, c->n + list->n, sizeof *pair);
+    if (!pair)
+        return BRC_ERR_MEMORY;
+    size_t n = merge_rows(sim, c, list, pair);
+    int code = 0;
+    bool same = n == c->n;
+    for (size_t i = 0; same && i < n; i++)
+        same = pair[i][0] == c->a[i] && pair[i][1] == c->b[i];
+    if (!same)
+        code = brc_contacts_set(sim->ctx, c, (const int32_t(*)[2])pair, n);
+    free(pair);
+    for (size_t i = 0; code == 0 && i < n; i++)
+        if (c->np[i] == 0 && vgcm_columns(c)->phase[i] == VGCM_SPHERE)
+            code = sphere_row(sim, law, c, i);
+    BRC_TRY(code);
+    return same ? 0 : brc_contacts_compact(sim->ctx, c);
+}
+
+int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
+                   const struct brc_candidates *grains, const struct brc_candidates *platens)
+{
+    BRC_TRY(update_rows(sim, law, &sim->pairs, grains));
+    return update_rows(sim, law, &sim->platens, platens);
+}

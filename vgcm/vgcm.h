@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* VGCM-3D: spheres that interact through the points of their common Laguerre facet. What the files
+ * of this folder share: parameters, state, and the functions that they call of each other. */
+#ifndef VGCM_VGCM_H
+#define VGCM_VGCM_H
+
+#include "common/sim.h"
+#include "vgcm/law.h"
+
+enum vgcm_softening { VGCM_SOFTENING_NONE, VGCM_SOFTENING_LINEAR, VGCM_SOFTENING_BILINEAR };
+enum vgcm_energies { VGCM_ENERGIES_TOTAL, VGCM_ENERGIES_POST_PEAK };
+enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERACTION_AREA };
+
+#define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                  \
+    REAL(density, "kg/m3", "2650 kg/m3", "(0, inf)", "density of the grains")                    \
+    REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "modulus of the equivalent continuum, eq 28")      \
+    REAL(eta, "1", "0.125", "[0, 10]", "shear stiffness over normal stiffness, eq 29")           \
+    REAL(mu, "1", "0.05", "[0, 10]", "friction coefficient of grains, eq 33")                    \
+    REAL(sigma_t, "Pa", "11.4 MPa", "(0, inf)", "tensile strength of a point, eq 32")            \
+    REAL(tau, "Pa", "88.5 MPa", "(0, inf)", "cohesion of a point, eq 33")                        \
+    CHOICE(softening, "none|linear|bilinear", "bilinear",                                        \
+           "after the peak; none: brittle, the fracture energies are not used")                  \
+    REAL(softening_beta, "1", "0.25", "(0, 1)",                                                  \
+         "bilinear: strength at the kink over the peak strength")                                \
+    REAL(softening_w1, "1", "0.75", "(0, 2)",                                                    \
+         "bilinear: displacement past the peak at the kink, in (post-peak energy)/strength; it " \
+         "ends at (2 - w1)/beta")                                                                \
+    REAL(g_fn, "J/m2", "64.6 J/m2", "(0, inf)", "fracture energy in tension")                    \
+    REAL(g_fs, "J/m2", "31114.4 J/m2", "(0, inf)", "fracture energy in shear")                   \
+    CHOICE(energies, "total|post_peak", "total",                                                 \
+           "g_fn and g_fs count from zero displacement, or from the peak on")                    \
+    CHOICE(                                                                                      \
+        points, "paper|exact|one", "paper",                                                      \
+        "paper: vertices and centroid; exact: the same drawn in to the facet's second moments; " \
+        "one: the centroid")                                                                     \
+    CHOICE(interaction, "gap|all|area", "gap",                                                   \
+           "which facets are contacts: spheres nearer than the gap, all, or large facets")       \
+    REAL(interaction_gap, "m", "0 m", "[0, inf)",                                                \
+         "gap: largest gap of two spheres that are bonded; 0: interaction_gap_ratio holds")      \
+    REAL(interaction_gap_ratio, "1", "0.2", "(0, 10]", "gap: the same in mean sphere diameters") \
+    REAL(interaction_area, "1", "0.5", "[0, 10]",                                                \
+         "area: smallest facet that is bonded, in mean areas of the inner facets")               \
+    REAL(viscous, "1/s", "0 1/s", "[0, inf)",                                                    \
+         "dynamic regime: viscous force = this times effective mass times relative velocity")
+
+struct vgcm_params {
+    BRC_PARAM_MEMBERS(VGCM_PARAMS)
+};
+
+#define VGCM_BODY_FIELDS(SCALAR, VECTOR) \
+    SCALAR(double, radius, BRC_STATE, "m", "radius of the sphere")
+
+struct vgcm_bodies {
+    VGCM_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+
+/* A row is a sphere contact (new neighbours), or a facet. While no point of a facet has been
+ * damaged the displacement of all its points is the affine field u, and nothing is kept per point:
+ * exact, not an approximation, as each point's increment is affine in its place. */
+enum vgcm_phase { VGCM_SPHERE, VGCM_AFFINE, VGCM_POINTS };
+
+/* order of generalised displacements and forces in the contact frame */
+enum { VGCM_OPEN, VGCM_S, VGCM_T, VGCM_TWIST, VGCM_BEND_S, VGCM_BEND_T, VGCM_N_MOTION };
+/* order of the area moments about the reference point: sums of A, A s, A t, A s s, A s t, A t t */
+enum { VGCM_A, VGCM_A_S, VGCM_A_T, VGCM_A_SS, VGCM_A_ST, VGCM_A_TT, VGCM_N_MOMENTS };
+
+#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR)                                                       \
+    SCALAR(uint8_t, phase, BRC_STATE, "1", "0 sphere contact, 1 affine facet, 2 facet of points") \
+    SCALAR(double, kn, BRC_STATE, "Pa m-1", "normal stiffness per unit area")                     \
+    SCALAR(double, plane, BRC_STATE, "m", "facet plane at d/2 + plane from a along n")            \
+    SCALAR(double, rim, BRC_STATE, "m", "largest distance of a point from the reference point")   \
+    SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0")   \
+    VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")     \
+    VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")        \
+    VECTOR(double, u, 6, BRC_STATE, "m, 1", "affine: opening, slip s t, turn about n s t")        \
+    VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt")   \
+    VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")
+
+struct vgcm_contacts {
+    VGCM_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+
+#define VGCM_POINT_FIELDS(SCALAR, VECTOR)                                             \
+    SCALAR(double, s, BRC_STATE, "m", "place in the contact plane")                   \
+    SCALAR(double, t, BRC_STATE, "m", "place in the contact plane")                   \
+    SCALAR(double, h, BRC_STATE, "m", "platens: height over the centre of a along n") \
+    SCALAR(double, area, BRC_STATE, "m2", "area that the point stands for")           \
+    SCALAR(double, un, BRC_STATE, "m", "opening; affine contacts keep u instead")     \
+    SCALAR(double, fs, BRC_STATE, "N", "shear force on b along s")                    \
+    SCALAR(double, ft, BRC_STATE, "N", "shear force on b along t")                    \
+    SCALAR(double, dn, BRC_STATE, "1", "damage by opening")                           \
+    SCALAR(double, ds, BRC_STATE, "1", "damage by slip")                              \
+    SCALAR(double, lost, BRC_STATE, "J", "energy dissipated until damage was 1")
+
+struct vgcm_points {
+    VGCM_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+
+struct vgcm_state {
+    struct vgcm_law law;
+    void (*forces)(struct brc_sim *sim, const struct vgcm_law *law);
+    int flags; /* of law.h */
+};
+
+static inline struct vgcm_contacts *vgcm_columns(const struct brc_contacts *c)
+{
+    return c->model_columns;
+}
+
+static inline struct vgcm_points *vgcm_point_columns(const struct brc_contacts *c)
+{
+    return c->point_columns;
+}
+
+/* model.c */
+void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *params);
+
+/* rows.c: which pairs interact, and the rows of new contacts */
+
+/* Facets that the interaction rule keeps. */
+struct vgcm_census {
+    size_t n_inner, n_contacts;             /* inner facets, those that are contacts */
+    double mean_distance, largest_distance; /* m, of the contacts */
+    double gap, smallest_area;              /* limits in use: m, m2 */
+};
+void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
+                      const struct brc_facets *facets);
+/* Radius of a cell's sphere; that of equal volume for a plain Voronoi cell. */
+double vgcm_radius(const struct brc_facets *facets, size_t cell);
+int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);
+int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
+                   const struct brc_candidates *grains, const struct brc_candidates *platens);
+
+/* forces.c: the specialised loops, by the flags of law.h */
+extern void (*const vgcm_forces_loops[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
+/* walls.c: few rows, so the flags are looked at as it runs */
+void vgcm_walls(struct brc_sim *sim, const struct vgcm_law *law, int flags);
+
+/* energy.c */
+void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3]);
+int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
+                      struct brc_springs *out);
+
+#endif

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loop over contacts of grains with platens. The points of boundary facets ride on the grain:
+ * frame (n, s, t) of the row turns with it and a point is at h n + s s + t t from the centre. The
+ * contact's own frame is fixed by the platen: normal out of the grain, against the platen's. */
+#include "vgcm/contact.h"
+
+struct wall {
+    struct brc_sim *sim;
+    struct brc_contacts *c;
+    struct vgcm_contacts *f;
+    struct vgcm_points *p;
+    const struct brc_platen *platen;
+    struct vgcm_law law; /* with the platen's friction */
+    struct vgcm_bond bond;
+    struct vgcm_energy energy;
+    double frame[3][3];       /* normal from grain to platen, two axes of the platen's plane */
+    double riding[3][3];      /* frame that rides on the grain */
+    double move[3];           /* m, of the platen against the grain's centre in this step */
+    double turn[3];           /* rad, of the grain in this step */
+    double viscosity;         /* viscous force over area and increment */
+    double drag[6], viscous;  /* viscous force on the platen and its moment about the grain; J */
+    double area, moment, gap; /* of springs that count; m */
+};
+
+static void set_frames(struct wall *w, size_t i)
+{
+    const struct brc_bodies *b = &w->sim->bodies;
+    size_t a = (size_t)w->c->a[i];
+    double dt = w->sim->dt, q[4];
+    brc_scale(w->frame[0], w->platen->n, -1);
+    brc_copy(w->frame[1], w->platen->across);
+    brc_cross(w->frame[2], w->frame[0], w->frame[1]);
+    brc_scale(w->turn, b->w[a], dt);
+    if (brc_norm2(w->turn) > 0) {
+        brc_quat_from_rotation(q, w->turn);
+        brc_quat_rotate(w->f->n[i], q, w->f->n[i]);
+        brc_quat_rotate(w->f->s[i], q, w->f->s[i]);
+        brc_normalise(w->f->n[i], w->f->n[i]);
+        brc_normalise(w->f->s[i], w->f->s[i]);
+    }
+    brc_copy(w->riding[0], w->f->n[i]);
+    brc_copy(w->riding[1], w->f->s[i]);
+    brc_cross(w->riding[2], w->riding[0], w->riding[1]);
+    brc_sub(w->move, b->v[w->c->b[i]], b->v[a]);
+    brc_scale(w->move, w->move, dt);
+}
+
+/* Motion of the platen against the grain's point at r in the contact's frame: opening, slips. */
+static void relative_motion(const struct wall *w, const double r[3], double du[3])
+{
+    double swing[3], middle[3];
+    brc_cross(swing, w->turn, r);
+    brc_copy(middle, r);
+    brc_axpy(middle, -0.5, swing); /* the arm halfway through the step */
+    brc_cross(swing, w->turn, middle);
+    brc_sub(middle, w->move, swing);
+    for (int k = 0; k < 3; k++)
+        du[k] = brc_dot(middle, w->frame[k]);
+}
+
+/* A gripped point: springs both ways that never break. */
+static void step_grip(struct wall *w, double area, const double du[3], struct vgcm_point *q)
+{
+    double kn = w->bond.kn * area, ks = w->bond.ks * area, old[3] = {kn * q->un, q->fs, q->ft};
+    q->un += du[0];
+    q->fn = kn * q->un;
+    w->energy.normal += 0.5 * (old[0] + q->fn) * du[0];
+    if (w->platen->grip == BRC_GRIP_AXIAL)
+        return;
+    q->fs -= ks * du[1];
+    q->ft -= ks * du[2];
+    w->energy.shear -= 0.5 * ((old[1] + q->fs) * du[1] + (old[2] + q->ft) * du[2]);
+}
+
+/* Viscous force on the platen in the contact's frame; a plain contact is never pulled by it. */
+static void point_drag(const struct wall *w, double area, const double du[3],
+                       const struct vgcm_point *q, double drag[3])
+{
+    for (int k = 0; k < 3; k++)
+        drag[k] = -w->viscosity * area * du[k];
+    if (w->platen->grip == BRC_GRIP_AXIAL)
+        drag[1] = drag[2] = 0;
+    if (w->platen->grip == BRC_GRIP_NONE && q->un >= 0)
+        brc_set(drag, 0, 0, 0);
+    if (w->platen->grip == BRC_GRIP_NONE && drag[0] < q->fn)
+        drag[0] = q->fn;
+}
+
+/* Adds a force on the platen, given in the contact's frame, at the arm r of the grain. */
+static void add_force(struct wall *w, size_t i, const double part[3], const double r[3])
+{
+    const struct brc_bodies *b = &w->sim->bodies;
+    double force[3] = {0, 0, 0}, arm[3], moment[3];
+    for (int k = 0; k < 3; k++)
+        brc_axpy(force, part[k], w->frame[k]);
+    brc_axpy(w->c->f[i], 1, force);
+    brc_cross(moment, r, force);
+    brc_axpy(w->c->ta[i], -1, moment);
+    brc_add(arm, b->x[w->c->a[i]], r);
+    brc_sub(arm, arm, b->x[w->c->b[i]]);
+    brc_cross(moment, arm, force);
+    brc_axpy(w->c->tb[i], 1, moment);
+}
+
+static void add_drag(struct wall *w, const double part[3], const double r[3])
+{
+    double force[3] = {0, 0, 0}, moment[3];
+    for (int k = 0; k < 3; k++)
+        brc_axpy(force, part[k], w->frame[k]);
+    brc_cross(moment, r, force);
+    for (int k = 0; k < 3; k++) {
+        w->drag[k] += force[k];
+        w->drag[3 + k] += moment[k];
+    }
+}
+
+/* Point j of row i, at the arm r of the grain, with the opening un. */
+static void step_point(struct wall *w, size_t i, size_t j, int flags, const double r[3], double un)
+{
+    struct vgcm_points *p = w->p;
+    double area = p->area[j], du[3];
+    bool is_grip = w->platen->grip != BRC_GRIP_NONE;
+    relative_motion(w, r, du);
+    struct vgcm_point q = {un - du[0], 0, p->fs[j], p->ft[j], 1, 0, 0};
+    if (is_grip)
+        step_grip(w, area, du, &q);
+    else
+        vgcm_law_step(&w->bond, flags & ~VGCM_BRITTLE, area, du, &q, &w->energy);
+    p->un[j] = un;
+    p->fs[j] = q.fs;
+    p->ft[j] = q.ft;
+    double part[3] = {-q.fn, q.fs, q.ft}; /* eq:vgcm:19 */
+    add_force(w, i, part, r);
+    if (flags & VGCM_VISCOUS) {
+        point_drag(w, area, du, &q, part);
+        add_force(w, i, part, r);
+        add_drag(w, part, r);
+    }
+    if (un < w->bond.u0 || is_grip) {
+        w->area += area;
+        w->moment += area * brc_norm2(r);
+    }
+    w->gap = un < w->gap ? un : w->gap;
+}
+
+/* Dissipation of the viscous forces, by the mean of those before and after the step. */
+static void account_drag(struct wall *w, size_t i)
+{
+    for (int k = 0; k < 3; k++) {
+        double force = 0.5 * (w->f->drag[i][k] + w->drag[k]);
+        double moment = 0.5 * (w->f->drag[i][3 + k] + w->drag[3 + k]);
+        w->viscous += moment * w->turn[k] - force * w->move[k];
+    }
+    for (int k = 0; k < 6; k++)
+        w->f->drag[i][k] = w->drag[k];
+}
+
+static void begin_row(struct wall *w, size_t i)
+{
+    struct brc_contacts *c = w->c;
+    const struct brc_sim *sim = w->sim;
+    w->platen = brc_sim_platen(sim, c->b[i]);
+    w->law.mu = w->platen->friction;
+    w->bond = (struct vgcm_bond){.law = &w->law,
+                                 .kn = w->f->kn[i],
+                                 .ks = w->law.eta * w->f->kn[i],
+                                 .u0 = w->law.sigma_t / w->f->kn[i]};
+    w->area = w->moment = 0;
+    w->gap = HUGE_VAL;
+    w->viscosity = sim->dt > 0 ? w->law.viscous * sim->bodies.true_mass[c->a[i]] /
+                                     (w->f->moment[i][VGCM_A] * sim->dt)
+                               : 0;
+    for (int k = 0; k < 6; k++)
+        w->drag[k] = 0;
+    brc_set(c->f[i], 0, 0, 0);
+    brc_set(c->ta[i], 0, 0, 0);
+    brc_set(c->tb[i], 0, 0, 0);
+    set_frames(w, i);
+}
+
+static void step_row(struct wall *w, size_t i, int flags)
+{
+    const struct brc_bodies *b = &w->sim->bodies;
+    double height[3], *k = w->c->k[i];
+    begin_row(w, i);
+    brc_sub(height, b->x[w->c->a[i]], b->x[w->c->b[i]]);
+    double above = brc_dot(height, w->platen->n);
+    for (size_t j = (size_t)w->c->p0[i], end = j + (size_t)w->c->np[i]; j < end; j++) {
+        double r[3], un = above - w->f->rest[i];
+        if (w->f->phase[i] == VGCM_SPHERE) {
+            brc_scale(r, w->platen->n, -above);
+        } else {
+            brc_scale(r, w->riding[0], w->p->h[j]);
+            brc_axpy(r, w->p->s[j], w->riding[1]);
+            brc_axpy(r, w->p->t[j], w->riding[2]);
+            un = above + brc_dot(r, w->platen->n);
+        }
+        step_point(w, i, j, flags, r, un);
+    }
+    w->c->gap[i] = w->gap;
+    if (flags & VGCM_VISCOUS)
+        account_drag(w, i);
+    double kmax = w->bond.kn > w->bond.ks ? w->bond.kn : w->bond.ks;
+    if (k[0] != kmax * w->area) {
+        brc_set(k, kmax * w->area, kmax * w->moment, 0);
+        w->c->k_version++;
+    }
+}
+
+void vgcm_walls(struct brc_sim *sim, const struct vgcm_law *law, int flags)
+{
+    struct wall w = {.sim = sim,
+                     .c = &sim->platens,
+                     .f = vgcm_columns(&sim->platens),
+                     .p = vgcm_point_columns(&sim->platens),
+                     .law = *law};
+    for (size_t i = 0; i < w.c->n; i++)
+        step_row(&w, i, flags);
+    if (flags & VGCM_LEDGER) {
+        sim->ledger.contact_normal += w.energy.normal;
+        sim->ledger.contact_shear += w.energy.shear;
+        sim->ledger.friction += w.energy.friction;
+        sim->ledger.viscous += w.viscous;
+    }
+}
