@@ -170,7 +170,7 @@ static inline void vgcm_law_account(const struct vgcm_bond *bond, double area, c
     double shear_old = (old->fs * old->fs + old->ft * old->ft) * inv / 2;
     double work = (old->fn + p->fn) / 2 * du[0];
     double loss = d > d_old ? work - (stored - stored_old) : 0;
-    double slip[2] = {(old->fs - p->fs) * inv - du[1], (old->ft - p->ft) * inv - du[2]};
+    double slip[2] = {(old->fs - k * du[1] - p->fs) * inv, (old->ft - k * du[2] - p->ft) * inv};
     double slid = ((old->fs + p->fs) * slip[0] + (old->ft + p->ft) * slip[1]) / 2;
     double rubbed = slid;
     if (d_old < 1) {
