@@ -46,10 +46,10 @@ build/deps.mk: .ci/deps
 
 CC       := gcc
 CXX      := g++
-# no -Wpedantic: before C23 it forbids passing double (*)[3] as const double (*)[3]
-WARNINGS := -Wall -Wextra -Wshadow -Wvla -Wpointer-arith -Wcast-qual -Wundef -Wformat=2 \
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wpointer-arith -Wcast-qual -Wundef -Wformat=2 \
             -Wwrite-strings -Wduplicated-cond -Wlogical-op -Wnull-dereference -Werror
-WARNINGS_C := -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+# before C23, pedantry forbids passing double (*)[3] as const double (*)[3]; C23 allows it
+WARNINGS_C := -Wno-c11-c2x-compat -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 WARNINGS_CXX := -Wmissing-declarations
 FLAGS_release := -O2 -g
 FLAGS_debug   := -O0 -g -DBRC_DEBUG
