@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calib/fabric.h"
+#include "common/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Adds half of the area that each inner face keeps when the cell's planes move in by r. */
+static int add_eroded_areas(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
+                            double r, struct brc_convex *work, double *area)
+{
+    size_t n = f->cell_first[cell + 1] - f->cell_first[cell];
+    struct brc_plane *planes = brc_alloc(ctx, n, sizeof *planes);
+    if (!planes)
+        return BRC_ERR_MEMORY;
+    brc_facets_cell_planes(f, cell, planes);
+    for (size_t i = 0; i < n; i++)
+        planes[i].d -= r;
+    int code = brc_facets_cell(ctx, f, cell, work);
+    double reach = code == 0 ? brc_convex_reach(work, f->centre[cell]) : 0;
+    if (code == 0)
+        code = brc_convex_from_planes(ctx, work, planes, n, f->centre[cell], 2 * reach);
+    for (size_t i = 0; code == 0 && i < work->n_faces; i++) {
+        double centroid[3];
+        if (work->plane[i].id >= 0)
+            area[work->plane[i].id] +=
+                0.5 * brc_polygon_area(work->vertex, work->loop + work->first[i],
+                                       work->first[i + 1] - work->first[i], work->plane[i].n,
+                                       centroid);
+    }
+    free(planes);
+    return code;
+}
+
+/* Areas that bonds have: those of the facets, or of the eroded faces; a face that erosion removes
+ * on either side has none. */
+static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
+                      const struct calib_fabric_rules *rules, double *area)
+{
+    struct brc_convex work;
+    int code = 0;
+    memcpy(area, f->area, f->n_facets * sizeof *area);
+    if (!rules->is_eroded)
+        return 0;
+    memset(area, 0, f->n_facets * sizeof *area);
+    brc_convex_init(&work);
+    for (size_t c = 0; c < f->n_cells && code == 0; c++)
+        code = add_eroded_areas(ctx, f, c, rules->rounding, &work, area);
+    brc_convex_free(&work);
+    return code;
+}
+
+static bool is_contact(const struct brc_facets *f, size_t i, double seed_distance, double gap)
+{
+    double radii = f->radius[f->cell[i][0]] + f->radius[f->cell[i][1]];
+    return f->is_contact[i] && seed_distance < radii + gap;
+}
+
+static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
+                      const struct calib_fabric_rules *rules, struct calib_fabric *sum)
+{
+    const int32_t *cell = f->cell[i];
+    double seeds[3], centres[3];
+    brc_sub(seeds, f->seed[cell[1]], f->seed[cell[0]]);
+    brc_sub(centres, f->centre[cell[1]], f->centre[cell[0]]);
+    double d_seeds = brc_norm(seeds), d = brc_dot(centres, f->normal[i]);
+    double length = rules->is_length_of_gap ? 2 * rules->rounding : brc_norm(centres);
+    sum->n_inner++;
+    if (f->is_contact[i]) {
+        sum->bond += bond_area * d * d / length;
+        sum->corners += (double)(f->first[i + 1] - f->first[i]) * d * d;
+        sum->stretch += d / length;
+    }
+    if (is_contact(f, i, d_seeds, rules->gap)) {
+        sum->n_contacts++;
+        sum->mean_distance += d_seeds;
+        sum->coverage += f->area[i] * d_seeds;
+    }
+}
+
+static int check_rules(struct brc_context *ctx, const struct calib_fabric_rules *rules)
+{
+    bool needs_rounding = rules->is_eroded || rules->is_length_of_gap;
+    if (needs_rounding && !(rules->rounding > 0))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "first guess: eroded areas and the gap as strain length need "
+                 "a sphero-radius above 0");
+    return 0;
+}
+
+int calib_fabric_measure(struct brc_context *ctx, const struct brc_facets *facets,
+                         const struct calib_fabric_rules *rules, struct calib_fabric *out)
+{
+    double volume3 = 0, centres3 = 0;
+    size_t n_bonds = 0;
+    memset(out, 0, sizeof *out);
+    BRC_TRY(check_rules(ctx, rules));
+    double *area = brc_alloc(ctx, facets->n_facets, sizeof *area);
+    if (!area)
+        return BRC_ERR_MEMORY;
+    int code = bond_areas(ctx, facets, rules, area);
+    for (size_t i = 0; i < facets->n_facets && code == 0; i++) {
+        const int32_t *cell = facets->cell[i];
+        double seeds[3], centres[3];
+        if (cell[1] < 0)
+            continue;
+        brc_sub(seeds, facets->seed[cell[1]], facets->seed[cell[0]]);
+        brc_sub(centres, facets->centre[cell[1]], facets->centre[cell[0]]);
+        volume3 += facets->area[i] * brc_norm(seeds);
+        centres3 += facets->area[i] * brc_dot(centres, facets->normal[i]);
+        n_bonds += facets->is_contact[i] != 0;
+        add_facet(facets, i, area[i], rules, out);
+    }
+    free(area);
+    BRC_TRY(code);
+    if (out->n_contacts == 0 || n_bonds == 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "first guess: no facet of the specimen is a contact");
+    out->mean_distance /= (double)out->n_contacts;
+    out->coverage /= volume3;
+    out->bond /= centres3;
+    out->corners /= centres3;
+    out->stretch /= (double)n_bonds;
+    return 0;
+}

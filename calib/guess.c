@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calib/guess.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define BRC_OWNER struct calib_guess_params
+static const struct brc_param guess_params[] = {BRC_PARAM_LIST(CALIB_GUESS_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list calib_guess_param_list =
+    BRC_PARAMS(guess_params, struct calib_guess_params);
+
+/* Direct over Brazilian tensile strength of rock (Nicksiar & Martin 2013). */
+static const double direct_over_brazilian = 0.77;
+/* From the two calibrated sets of the VGCM-3D paper (Tables 1 and 2), means of brittle and
+ * softening: friction angle above that of the contacts (40.3 and 43.7 deg), c/tau (0.254, 0.280),
+ * and q_u/tau (1.176, 1.407). */
+static const double interlock_angle = 42.0 * BRC_PI / 180;
+static const double cohesion_over_tau = 0.267;
+static const double strength_over_tau = 1.29;
+
+static void note(struct calib_guess *g, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void note(struct calib_guess *g, const char *format, ...)
+{
+    size_t used = strlen(g->note);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(g->note + used, sizeof g->note - used, format, args);
+    va_end(args);
+}
+
+static void add(struct calib_guess *g, const char *key, const char *unit, double value)
+{
+    g->value[g->n++] = (struct calib_value){key, unit, value};
+}
+
+const struct calib_value *calib_guess_find(const struct calib_guess *g, const char *key)
+{
+    for (size_t i = 0; i < g->n; i++)
+        if (strcmp(g->value[i].key, key) == 0)
+            return &g->value[i];
+    return NULL;
+}
+
+int calib_rock_from_targets(struct brc_context *ctx, const struct calib_targets *targets,
+                            struct calib_rock *rock)
+{
+    double value[CALIB_N_QUANTITIES] = {0};
+    bool has[CALIB_N_QUANTITIES] = {false};
+    for (size_t i = 0; i < targets->n; i++) {
+        value[targets->target[i].quantity] = targets->target[i].value;
+        has[targets->target[i].quantity] = true;
+    }
+    if (!has[CALIB_YOUNGS_MODULUS] || !has[CALIB_POISSON_RATIO])
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "first guess: %s has no %s; the guess needs youngs_modulus and poisson_ratio",
+                 targets->title, has[CALIB_YOUNGS_MODULUS] ? "poisson_ratio" : "youngs_modulus");
+    rock->is_tension_estimated = !has[CALIB_TENSILE_STRENGTH];
+    rock->tension = rock->is_tension_estimated
+                        ? direct_over_brazilian * value[CALIB_BRAZILIAN_STRENGTH]
+                        : value[CALIB_TENSILE_STRENGTH];
+    if (!(rock->tension > 0))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "first guess: %s has neither tensile_strength nor brazilian_strength; the guess "
+                 "needs one of them",
+                 targets->title);
+    rock->e = value[CALIB_YOUNGS_MODULUS];
+    rock->nu = value[CALIB_POISSON_RATIO];
+    rock->strength = value[CALIB_STRENGTH];
+    rock->cohesion = value[CALIB_COHESION];
+    rock->friction_angle = value[CALIB_FRICTION_ANGLE];
+    return 0;
+}
+
+/* ---- parts that both models share ---------------------------------------------------------- */
+
+static int guess_elastic(struct brc_context *ctx, const struct calib_rock *rock,
+                         const struct calib_inverse *how, struct calib_stiffness *s,
+                         struct calib_guess *out)
+{
+    memset(out, 0, sizeof *out);
+    BRC_TRY(calib_moduli_invert(ctx, rock->e, rock->nu, how, s));
+    BRC_TRY(calib_moduli(ctx, s, &out->e, &out->nu));
+    out->nu_misfit = out->nu - rock->nu;
+    note(out, "Stiffnesses from E = %.4g GPa and nu = %.4g by a uniform strain.", rock->e / 1e9,
+         rock->nu);
+    if (fabs(out->nu_misfit) > 1e-9)
+        note(out, " That nu is out of reach; the nearest is %.4g, off by %.4g.", out->nu,
+             out->nu_misfit);
+    if (rock->is_tension_estimated)
+        note(out, " Direct tension %.4g MPa taken as %.2f of the Brazilian strength.",
+             rock->tension / 1e6, direct_over_brazilian);
+    return 0;
+}
+
+/* Contacts need only the friction that interlocked facets leave open. */
+static int guess_friction(struct brc_context *ctx, const struct calib_rock *rock,
+                          const struct calib_guess_params *params, struct calib_guess *out)
+{
+    double angle = rock->friction_angle - interlock_angle;
+    if (rock->friction_angle == 0) {
+        note(out, " Friction of contacts not guessed: no friction_angle.");
+        return 0;
+    }
+    if (angle < 0 && !params->nearest)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "first guess: friction_angle %.4g deg is below the %.4g deg that interlocked "
+                 "facets give without friction; `nearest` takes friction 0 and states the misfit",
+                 rock->friction_angle * 180 / BRC_PI, interlock_angle * 180 / BRC_PI);
+    if (angle < 0) {
+        note(out, " Friction angle is out of reach; friction 0, off by %.4g deg.",
+             -angle * 180 / BRC_PI);
+        angle = 0;
+    } else {
+        note(out, " Friction: interlocking gives %.3g deg of the friction angle.",
+             interlock_angle * 180 / BRC_PI);
+    }
+    add(out, "mu", "1", tan(angle));
+    return 0;
+}
+
+/* ---- vgcm ---------------------------------------------------------------------------------- */
+
+/* Cohesion of points, 0 when the rock has no value to start from. */
+static double guess_tau(const struct calib_rock *rock, struct calib_guess *out)
+{
+    if (rock->cohesion > 0) {
+        note(out, " tau = cohesion / %.3g (published sets).", cohesion_over_tau);
+        return rock->cohesion / cohesion_over_tau;
+    }
+    if (rock->strength > 0) {
+        note(out, " tau = unconfined strength / %.3g (published sets).", strength_over_tau);
+        return rock->strength / strength_over_tau;
+    }
+    note(out, " tau not guessed: neither cohesion nor strength.");
+    return 0;
+}
+
+int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
+                     const struct calib_fabric *fabric, const struct calib_guess_params *params,
+                     struct calib_guess *out)
+{
+    struct calib_inverse how = {1, 1, params->eta_min, params->nearest};
+    struct calib_stiffness s;
+    BRC_TRY(guess_elastic(ctx, rock, &how, &s, out));
+    double e_bar = s.n_closed / fabric->coverage, eta = s.t_closed / s.n_closed;
+    /* the point whose normal is the load's breaks first, at E-bar times the strain */
+    double sigma_t = rock->tension * e_bar / out->e;
+    double tau = guess_tau(rock, out);
+    double energy_scale = params->energy_ratio * fabric->mean_distance / (2 * e_bar);
+    add(out, "e_bar", "Pa", e_bar);
+    add(out, "eta", "1", eta);
+    add(out, "sigma_t", "Pa", sigma_t);
+    add(out, "g_fn", "J/m2", energy_scale * sigma_t * sigma_t);
+    if (tau > 0) {
+        add(out, "tau", "Pa", tau);
+        add(out, "g_fs", "J/m2", energy_scale * tau * tau / eta);
+    }
+    note(out, " Fracture energies are %.3g times the elastic ones.", params->energy_ratio);
+    return guess_friction(ctx, rock, params, out);
+}
+
+/* ---- polyhedra ----------------------------------------------------------------------------- */
+
+/* Largest |opening| + |slip| over all facets, for a unit axial lengthening: at 22.5 deg. */
+static double largest_bond_strain(double nu)
+{
+    return 0.5 * (1 - nu) + (1 + nu) / sqrt(2);
+}
+
+int calib_guess_polyhedra(struct brc_context *ctx, const struct calib_rock *rock,
+                          const struct calib_fabric *fabric,
+                          const struct calib_guess_params *params, struct calib_guess *out)
+{
+    struct calib_inverse how = {params->bond_ratio, params->bond_share, params->eta_min,
+                                params->nearest};
+    struct calib_stiffness s;
+    double e_tension, nu_tension, corners = params->features * fabric->corners;
+    BRC_TRY(guess_elastic(ctx, rock, &how, &s, out));
+    struct calib_stiffness swapped = {s.n_closed, s.n_open, s.t_closed, s.t_open};
+    BRC_TRY(calib_moduli(ctx, &swapped, &e_tension, &nu_tension));
+    /* an open facet has its bond alone; a closed one its corners, and the bond in shear */
+    add(out, "kn", "N/m", s.n_closed / corners);
+    add(out, "kt", "N/m", (s.t_closed - s.t_open) / corners);
+    add(out, "bn", "Pa", s.n_open / fabric->bond);
+    add(out, "bt", "Pa", s.t_open / fabric->bond);
+    add(out, "eps_th", "1",
+        fabric->stretch * largest_bond_strain(nu_tension) * rock->tension / e_tension);
+    note(out, " Modulus in tension %.4g GPa. eps_th: first bond to break in direct tension.",
+         e_tension / 1e9);
+    return guess_friction(ctx, rock, params, out);
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calib/objective.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const test_names[] = {"compression", "tension", "brazilian"};
+enum { N_TESTS = sizeof test_names / sizeof test_names[0] };
+
+size_t calib_objective_size(const struct calib_objective *o)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < o->targets->n; i++)
+        n += calib_quantities[o->targets->target[i].quantity].test >= 0;
+    return n;
+}
+
+/* A variable must be a real key of the list, free once, with bounds that the list accepts. */
+static int check_variable(struct brc_context *ctx, const struct calib_objective *o, size_t i,
+                          struct brc_param_list list)
+{
+    const struct calib_variable *v = &o->variables[i];
+    const struct brc_param *p = brc_params_find(list, v->key);
+    if (!p || p->kind != BRC_REAL) {
+        const char *nearest = brc_params_nearest(list, v->key);
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: %s.%s is no quantity of the model%s%s%s; `breccia params %s` lists "
+                 "them",
+                 o->model, v->key, nearest ? "; did you mean '" : "", nearest ? nearest : "",
+                 nearest ? "'?" : "", o->model);
+    }
+    if (!(v->low < v->high) || !isfinite(v->low) || !isfinite(v->high))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: %s.%s has the bounds %g and %g %s; allowed finite bounds, the first "
+                 "below the second",
+                 o->model, v->key, v->low, v->high, p->unit);
+    for (size_t j = 0; j < i; j++)
+        if (strcmp(v->key, o->variables[j].key) == 0)
+            BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s is a variable twice", o->model,
+                     v->key);
+    return 0;
+}
+
+int calib_objective_check(struct brc_context *ctx, const struct calib_objective *o,
+                          struct brc_param_list list)
+{
+    if (o->n == 0 || calib_objective_size(o) < o->n)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: %zu variables for %zu targets that a test measures; allowed 1 to as "
+                 "many variables as such targets",
+                 o->n, calib_objective_size(o));
+    if (!(o->relative_deviation > 0) || !isfinite(o->relative_deviation))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: the relative deviation %g of targets without one must be above 0",
+                 o->relative_deviation);
+    for (size_t i = 0; i < o->n; i++)
+        BRC_TRY(check_variable(ctx, o, i, list));
+    return 0;
+}
+
+static int check_bounds(struct brc_context *ctx, const struct calib_objective *o, const double *x)
+{
+    for (size_t i = 0; i < o->n; i++) {
+        const struct calib_variable *v = &o->variables[i];
+        if (!(x[i] >= v->low && x[i] <= v->high))
+            BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s = %g is outside its bounds [%g, %g]",
+                     o->model, v->key, x[i], v->low, v->high);
+    }
+    return 0;
+}
+
+static int run_test(struct brc_context *ctx, const struct calib_objective *o, const double *x,
+                    int test, struct brc_summary *summary)
+{
+    struct calib_trial trial = {o->model, (enum brc_test)test, o->n, o->variables, x};
+    memset(summary, 0, sizeof *summary);
+    return o->runner.run(ctx, o->runner.user, &trial, summary);
+}
+
+static int add_residual(struct brc_context *ctx, const struct calib_objective *o,
+                        const struct calib_target *t, const struct brc_summary *summary,
+                        struct calib_evaluation *out)
+{
+    const struct calib_quantity *q = &calib_quantities[t->quantity];
+    const struct brc_summary_value *measured = brc_output_result(summary, q->result);
+    if (!measured || !isfinite(measured->value))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: the %s test of %s gave no %s; run its case alone and look at the "
+                 "curve",
+                 test_names[q->test], o->model, q->result);
+    struct calib_residual *r = &out->residual[out->n++];
+    r->quantity = t->quantity;
+    r->target = t->value;
+    r->deviation = t->deviation > 0 ? t->deviation : o->relative_deviation * fabs(t->value);
+    if (!(r->deviation > 0))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: the target %s is 0 and has no deviation; give one", q->name);
+    r->measured = measured->value;
+    r->residual = (r->measured - r->target) / r->deviation;
+    out->cost += 0.5 * r->residual * r->residual;
+    return 0;
+}
+
+/* Whether a target asks for the test. */
+static bool is_asked(const struct calib_objective *o, int test)
+{
+    for (size_t i = 0; i < o->targets->n; i++)
+        if (calib_quantities[o->targets->target[i].quantity].test == test)
+            return true;
+    return false;
+}
+
+int calib_objective_evaluate(struct brc_context *ctx, const struct calib_objective *o,
+                             const double *x, struct calib_evaluation *out)
+{
+    struct brc_summary summary[N_TESTS];
+    memset(out, 0, sizeof *out);
+    BRC_TRY(check_bounds(ctx, o, x));
+    for (int test = 0; test < N_TESTS; test++) {
+        if (!is_asked(o, test))
+            continue;
+        BRC_TRY(run_test(ctx, o, x, test, &summary[test]));
+        out->cpu_s += summary[test].cpu_s;
+        out->n_runs++;
+    }
+    for (size_t i = 0; i < o->targets->n; i++) {
+        const struct calib_target *t = &o->targets->target[i];
+        int test = calib_quantities[t->quantity].test;
+        if (test >= 0)
+            BRC_TRY(add_residual(ctx, o, t, &summary[test], out));
+    }
+    return 0;
+}
