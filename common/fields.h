@@ -4,13 +4,13 @@
  *
  * A field list is an X-macro with two row kinds:
  *
- *     #define VGCM_POINT_FIELDS(SCALAR, VECTOR)                                      \
+ *     #define LAW_POINT_FIELDS(SCALAR, VECTOR)                                      \
  *         SCALAR(double, un, BRC_STATE, "m", "normal opening, positive apart")      \
  *         VECTOR(double, fs, 3, BRC_STATE, "N", "shear force on b")
- *     struct vgcm_points { VGCM_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3) };
- *     #define BRC_OWNER struct vgcm_points
- *     static const struct brc_field vgcm_point_fields[] = {
- *         VGCM_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)
+ *     struct law_points { LAW_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3) };
+ *     #define BRC_OWNER struct law_points
+ *     static const struct brc_field law_point_fields[] = {
+ *         LAW_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)
  *     };
  *     #undef BRC_OWNER
  */

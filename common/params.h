@@ -6,9 +6,9 @@
  *     #define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                        \
  *         REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "contact modulus E-bar, eq 28")          \
  *         CHOICE(interaction, "all|gap|area", "gap", "which facets are contacts")
- *     struct vgcm_params { BRC_PARAM_MEMBERS(VGCM_PARAMS) };
- *     #define BRC_OWNER struct vgcm_params
- *     static const struct brc_param vgcm_param_list[] = { BRC_PARAM_LIST(VGCM_PARAMS) };
+ *     struct law_params { BRC_PARAM_MEMBERS(LAW_PARAMS) };
+ *     #define BRC_OWNER struct law_params
+ *     static const struct brc_param law_param_list[] = { BRC_PARAM_LIST(LAW_PARAMS) };
  *     #undef BRC_OWNER
  */
 #ifndef BRC_PARAMS_H
