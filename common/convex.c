@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "convex.h"
 
+#include "grow.h"
 #include "vec.h"
 
 #include <stdlib.h>
@@ -56,44 +57,21 @@ void brc_convex_free(struct brc_convex *c)
     brc_convex_init(c);
 }
 
-/* The block with room for at least need items of this size; updates *cap. */
-static void *grown(struct brc_context *ctx, void *block, size_t *cap, size_t need, size_t size)
-{
-    size_t wanted = *cap > 8 ? *cap : 8;
-    while (wanted < need)
-        wanted *= 2;
-    if (block && wanted == *cap)
-        return block;
-    void *bigger = brc_realloc(ctx, block, wanted, size);
-    if (bigger)
-        *cap = wanted;
-    return bigger;
-}
-
-/* Grows an array, or returns the failure from the calling function; the old array stays valid. */
-#define GROW(ctx, array, cap, need)                                           \
-    do {                                                                      \
-        void *block = grown((ctx), (array), &(cap), (need), sizeof *(array)); \
-        if (!block)                                                           \
-            return BRC_ERR_MEMORY;                                            \
-        (array) = block;                                                      \
-    } while (0)
-
-static int reserve(struct brc_context *ctx, struct brc_convex *c, size_t vertices, size_t faces,
-                   size_t loop)
+int brc_convex_reserve(struct brc_context *ctx, struct brc_convex *c, size_t vertices, size_t faces,
+                       size_t loop)
 {
     size_t cap = c->cap_faces;
-    GROW(ctx, c->vertex, c->cap_vertices, vertices);
-    GROW(ctx, c->plane, cap, faces + 1);
-    GROW(ctx, c->first, c->cap_faces, faces + 1);
-    GROW(ctx, c->loop, c->cap_loop, loop);
+    BRC_GROW(ctx, c->vertex, c->cap_vertices, vertices);
+    BRC_GROW(ctx, c->plane, cap, faces + 1);
+    BRC_GROW(ctx, c->first, c->cap_faces, faces + 1);
+    BRC_GROW(ctx, c->loop, c->cap_loop, loop);
     return 0;
 }
 
 int brc_convex_copy(struct brc_context *ctx, struct brc_convex *to, const struct brc_convex *from)
 {
     size_t n_loop = from->n_faces ? from->first[from->n_faces] : 0;
-    BRC_TRY(reserve(ctx, to, from->n_vertices, from->n_faces, n_loop));
+    BRC_TRY(brc_convex_reserve(ctx, to, from->n_vertices, from->n_faces, n_loop));
     to->n_vertices = from->n_vertices;
     to->n_faces = from->n_faces;
     to->first[0] = 0;
@@ -112,7 +90,7 @@ int brc_convex_box(struct brc_context *ctx, struct brc_convex *c, const double l
     /* vertex number: bit 0 = x high, bit 1 = y high, bit 2 = z high */
     static const int32_t loops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                         {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    BRC_TRY(reserve(ctx, c, 8, 6, 24));
+    BRC_TRY(brc_convex_reserve(ctx, c, 8, 6, 24));
     c->n_vertices = 8;
     c->n_faces = 6;
     for (int v = 0; v < 8; v++)
@@ -142,16 +120,16 @@ static int scratch_reserve(struct brc_context *ctx, struct brc_convex *c)
     /* a clip adds at most one vertex an edge and one face of at most as many vertices as edges */
     size_t vertices = c->n_vertices + n_loop, loop = 3 * n_loop + c->n_vertices;
     size_t cap_height = s->cap_vertices, cap_side = s->cap_vertices, cap_plane = s->cap_faces;
-    GROW(ctx, s->height, cap_height, vertices);
-    GROW(ctx, s->side, cap_side, vertices);
-    GROW(ctx, s->rename, s->cap_vertices, vertices);
-    GROW(ctx, s->plane, cap_plane, c->n_faces + 1);
-    GROW(ctx, s->first, s->cap_faces, c->n_faces + 1);
-    GROW(ctx, s->loop, s->cap_loop, loop);
-    GROW(ctx, s->edges, s->cap_edges, loop);
-    GROW(ctx, s->cuts, s->cap_cuts, n_loop);
+    BRC_GROW(ctx, s->height, cap_height, vertices);
+    BRC_GROW(ctx, s->side, cap_side, vertices);
+    BRC_GROW(ctx, s->rename, s->cap_vertices, vertices);
+    BRC_GROW(ctx, s->plane, cap_plane, c->n_faces + 1);
+    BRC_GROW(ctx, s->first, s->cap_faces, c->n_faces + 1);
+    BRC_GROW(ctx, s->loop, s->cap_loop, loop);
+    BRC_GROW(ctx, s->edges, s->cap_edges, loop);
+    BRC_GROW(ctx, s->cuts, s->cap_cuts, n_loop);
     s->n_faces = s->n_loop = s->n_edges = s->n_cuts = 0;
-    return reserve(ctx, c, vertices, c->n_faces + 1, loop);
+    return brc_convex_reserve(ctx, c, vertices, c->n_faces + 1, loop);
 }
 
 /* Number of the vertex where the plane cuts the edge u-v; made at the first call. */

@@ -29,6 +29,9 @@ struct brc_convex {
 
 void brc_convex_init(struct brc_convex *c);
 void brc_convex_free(struct brc_convex *c);
+/* Makes room; what the object holds stays. */
+int brc_convex_reserve(struct brc_context *ctx, struct brc_convex *c, size_t vertices, size_t faces,
+                       size_t loop);
 int brc_convex_copy(struct brc_context *ctx, struct brc_convex *to, const struct brc_convex *from);
 /* Axis-parallel box; face ids 0..5 = -x +x -y +y -z +z. */
 int brc_convex_box(struct brc_context *ctx, struct brc_convex *c, const double low[3],

@@ -41,6 +41,12 @@ struct brc_facets_quality {
 };
 void brc_facets_check(const struct brc_facets *f, double domain_volume,
                       struct brc_facets_quality *quality);
+/* The check that nothing leaves unseen: every cell is a closed convex body (each edge once in each
+ * direction, Euler's formula, volume above zero, closure), and the volumes sum to the domain. An
+ * error names the cell. */
+int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume);
+/* Sets is_contact and area_dropped for a limit of min_area_ratio times the mean inner area. */
+void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio);
 /* Planes of a cell's facets, outward, id = facet; n = cell_first[c+1] - cell_first[c]. */
 void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_plane *planes);
 /* The cell as a convex polyhedron with the shared vertices; face ids are facet numbers. */

@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The only C++ of breccia. Exact predicates give the combinatorial structure; positions are rounded
+ * from long double or, where that loses digits, from exact arithmetic. No exception leaves. */
+#define CGAL_NDEBUG
+/* false alarms in the headers of CGAL and Boost, seen through inlining */
+#pragma GCC diagnostic ignored "-Wnull-dereference"
+
+extern "C" {
+#include "tess_cgal.h"
+}
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
+#include <CGAL/Delaunay_mesh_size_criteria_2.h>
+#include <CGAL/Delaunay_mesh_vertex_base_2.h>
+#include <CGAL/Delaunay_mesher_2.h>
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/MP_Float.h>
+#include <CGAL/Regular_triangulation_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <cmath>
+#include <exception>
+#include <map>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Weighted = Kernel::Weighted_point_3;
+
+using Delaunay = CGAL::Delaunay_triangulation_3<
+    Kernel, CGAL::Triangulation_data_structure_3<
+                CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel>,
+                CGAL::Triangulation_cell_base_with_info_3<
+                    int32_t, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>>;
+using Regular = CGAL::Regular_triangulation_3<
+    Kernel,
+    CGAL::Triangulation_data_structure_3<
+        CGAL::Triangulation_vertex_base_with_info_3<
+            int32_t, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>,
+        CGAL::Triangulation_cell_base_with_info_3<
+            int32_t, Kernel,
+            CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
+                                                    CGAL::Discard_hidden_points>>>>;
+
+using Mesh = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_base_2<Kernel>,
+                                                 CGAL::Delaunay_mesh_face_base_2<Kernel>>>;
+
+/* A triangle is bad when its area is above the limit or its smallest angle below 20.7 degrees (the
+ * bound that is proved to end). CGAL's own area criterion mistakes the sine by a factor of two. */
+class Area_criteria
+{
+  public:
+    using Face_handle = Mesh::Face_handle;
+    using Quality = CGAL::Delaunay_mesh_size_criteria_2<Mesh>::Quality; /* sine^2, relative area */
+
+    explicit Area_criteria(double area) : max_area(area)
+    {
+    }
+
+    CGAL::Mesh_2::Face_badness operator()(Quality q) const
+    {
+        if (q.size() > 1)
+            return CGAL::Mesh_2::IMPERATIVELY_BAD;
+        return q.sine() < 0.125 ? CGAL::Mesh_2::BAD : CGAL::Mesh_2::NOT_BAD;
+    }
+
+    CGAL::Mesh_2::Face_badness operator()(const Face_handle &f, Quality &q) const
+    {
+        const auto &a = f->vertex(0)->point(), &b = f->vertex(1)->point(),
+                   &c = f->vertex(2)->point();
+        double area = CGAL::area(a, b, c), ab = CGAL::squared_distance(a, b),
+               bc = CGAL::squared_distance(b, c), ca = CGAL::squared_distance(c, a);
+        double longest_two = ab * bc * ca / std::fmin(ab, std::fmin(bc, ca));
+        q = Quality(4 * area * area / longest_two, area / max_area);
+        return (*this)(q);
+    }
+
+    using Is_bad = Area_criteria;
+    Is_bad is_bad_object() const
+    {
+        return *this;
+    }
+
+  private:
+    double max_area;
+};
+
+/* Guards stand far around the region, so that all cells of seeds are bounded. */
+constexpr int32_t guard = -1;
+
+double weight_of(const Point &)
+{
+    return 0;
+}
+
+double weight_of(const Weighted &p)
+{
+    return p.weight();
+}
+
+Point make_point(const Delaunay &, double x, double y, double z, double)
+{
+    return Point(x, y, z);
+}
+
+Weighted make_point(const Regular &, double x, double y, double z, double w)
+{
+    return Weighted(Point(x, y, z), w);
+}
+
+int32_t nearest(const Delaunay &t, const Point &p)
+{
+    return t.nearest_vertex(p)->info();
+}
+
+int32_t nearest(const Regular &t, const Weighted &p)
+{
+    return t.nearest_power_vertex(p.point())->info();
+}
+
+/* Cramer's rule: numerators and determinant of d x = b. */
+template <class Number>
+void solve(const Number d[3][3], const Number b[3], Number x[3], Number &det)
+{
+    Number c[3];
+    auto cross = [](const Number p[3], const Number q[3], Number r[3]) {
+        r[0] = p[1] * q[2] - p[2] * q[1];
+        r[1] = p[2] * q[0] - p[0] * q[2];
+        r[2] = p[0] * q[1] - p[1] * q[0];
+    };
+    cross(d[1], d[2], c);
+    det = d[0][0] * c[0] + d[0][1] * c[1] + d[0][2] * c[2];
+    for (int k = 0; k < 3; k++)
+        x[k] = b[0] * c[k];
+    cross(d[2], d[0], c);
+    for (int k = 0; k < 3; k++)
+        x[k] = x[k] + b[1] * c[k];
+    cross(d[0], d[1], c);
+    for (int k = 0; k < 3; k++)
+        x[k] = x[k] + b[2] * c[k];
+}
+
+/* The point of equal power to four seeds p with weights w, relative to p[0]: numerators and
+ * determinant; shape is the determinant over the product of the edge lengths, squared. */
+template <class Number>
+void power_centre(const double p[4][3], const double w[4], Number x[3], Number &det, Number &shape)
+{
+    Number d[3][3], b[3], product(1);
+    for (int i = 0; i < 3; i++) {
+        Number square(0);
+        for (int k = 0; k < 3; k++) {
+            d[i][k] = Number(p[i + 1][k]) - Number(p[0][k]);
+            square = square + d[i][k] * d[i][k];
+        }
+        b[i] = (square - Number(w[i + 1]) + Number(w[0])) * Number(0.5);
+        product = product * square;
+    }
+    solve(d, b, x, det);
+    shape = product;
+}
+
+template <class Cell> void cell_centre(const Cell &cell, double x[3])
+{
+    /* below this sine, long double may lose more than the last digits of a double */
+    constexpr long double flat = 1e-3L;
+    double p[4][3], w[4];
+    for (int i = 0; i < 4; i++) {
+        const auto &q = cell->vertex(i)->point();
+        p[i][0] = q.x();
+        p[i][1] = q.y();
+        p[i][2] = q.z();
+        w[i] = weight_of(q);
+    }
+    long double c[3], det, product;
+    power_centre<long double>(p, w, c, det, product);
+    if (det * det > flat * flat * product) {
+        for (int k = 0; k < 3; k++)
+            x[k] = static_cast<double>(p[0][k] + c[k] / det);
+        return;
+    }
+    CGAL::MP_Float exact[3], exact_det, exact_product;
+    power_centre<CGAL::MP_Float>(p, w, exact, exact_det, exact_product);
+    for (int k = 0; k < 3; k++)
+        x[k] = p[0][k] + CGAL::to_double(exact[k]) / CGAL::to_double(exact_det);
+}
+
+/* The facet across the edge between two seeds: the cells around the edge, in turn. */
+template <class Triangulation>
+int add_facet(brc_context *ctx, const Triangulation &t, typename Triangulation::Edge edge,
+              double (*seed)[3], std::vector<int32_t> &loop, brc_complex *out)
+{
+    int32_t a = edge.first->vertex(edge.second)->info();
+    int32_t b = edge.first->vertex(edge.third)->info();
+    if (a == guard && b == guard)
+        return 0;
+    if (b != guard && (a == guard || a > b)) {
+        std::swap(a, b);
+        std::swap(edge.second, edge.third);
+    }
+    loop.clear();
+    auto start = t.incident_cells(edge), at = start;
+    do
+        loop.push_back(at->info());
+    while (++at != start);
+    brc_complex_facet facet = {{a, b},
+                               b == guard ? BRC_FACE_OPEN : BRC_FACE_INNER,
+                               static_cast<int32_t>(loop.size()),
+                               0,
+                               {0, 0, 0}};
+    if (b != guard) {
+        double d[3], length;
+        for (int k = 0; k < 3; k++)
+            d[k] = seed[b][k] - seed[a][k];
+        length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int k = 0; k < 3; k++)
+            facet.normal[k] = d[k] / length;
+    }
+    return brc_complex_add_facet(ctx, out, &facet, loop.data());
+}
+
+template <class Triangulation>
+int copy_cells(brc_context *ctx, Triangulation &t, double (*seed)[3], brc_complex *out)
+{
+    int32_t n = 0;
+    for (auto c = t.finite_cells_begin(); c != t.finite_cells_end(); ++c) {
+        double x[3];
+        cell_centre(c, x);
+        BRC_TRY(brc_complex_add_vertex(ctx, out, x));
+        c->info() = n++;
+    }
+    std::vector<int32_t> loop;
+    for (auto e = t.finite_edges_begin(); e != t.finite_edges_end(); ++e)
+        BRC_TRY(add_facet(ctx, t, *e, seed, loop, out));
+    return 0;
+}
+
+template <class Triangulation>
+int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
+               const double centre[3], double half_width, int32_t *hider, brc_complex *out)
+{
+    using Vertex = typename Triangulation::Point;
+    Triangulation t;
+    double low = INFINITY, high = 0;
+    for (size_t i = 0; i < n; i++) {
+        double w = radius ? radius[i] * radius[i] : 0;
+        low = std::fmin(low, w);
+        high = std::fmax(high, w);
+    }
+    /* far enough that inside the region every seed is nearer, whatever the weights */
+    double far = 8 * std::sqrt(half_width * half_width + high - low);
+    std::vector<std::pair<Vertex, int32_t>> points;
+    points.reserve(n + 8);
+    for (int k = 0; k < 8; k++)
+        points.emplace_back(make_point(t, centre[0] + (k & 1 ? far : -far),
+                                       centre[1] + (k & 2 ? far : -far),
+                                       centre[2] + (k & 4 ? far : -far), low),
+                            guard);
+    for (size_t i = 0; i < n; i++)
+        points.emplace_back(
+            make_point(t, seed[i][0], seed[i][1], seed[i][2], radius ? radius[i] * radius[i] : 0),
+            static_cast<int32_t>(i));
+    t.insert(points.begin(), points.end());
+    for (size_t i = 0; i < n; i++)
+        hider[i] = 0;
+    for (auto v = t.finite_vertices_begin(); v != t.finite_vertices_end(); ++v)
+        if (v->info() != guard)
+            hider[v->info()] = -1;
+    for (size_t i = 0; i < n; i++)
+        if (hider[i] == 0)
+            hider[i] = nearest(t, points[i + 8].first);
+    return copy_cells(ctx, t, seed, out);
+}
+
+int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_cgal_mesh *out)
+{
+    std::map<Mesh::Vertex_handle, int32_t> vertices;
+    std::map<Mesh::Face_handle, int32_t> faces;
+    for (auto f = mesh.finite_faces_begin(); f != mesh.finite_faces_end(); ++f)
+        if (f->is_in_domain())
+            faces.emplace(f, static_cast<int32_t>(faces.size()));
+    out->vertex =
+        static_cast<double(*)[2]>(brc_alloc(ctx, mesh.number_of_vertices(), sizeof *out->vertex));
+    out->triangle = static_cast<int32_t(*)[3]>(brc_alloc(ctx, faces.size(), sizeof *out->triangle));
+    out->neighbour =
+        static_cast<int32_t(*)[3]>(brc_alloc(ctx, faces.size(), sizeof *out->neighbour));
+    if (!out->vertex || !out->triangle || !out->neighbour)
+        return BRC_ERR_MEMORY;
+    for (auto v = mesh.finite_vertices_begin(); v != mesh.finite_vertices_end(); ++v) {
+        out->vertex[out->n_vertices][0] = v->point().x();
+        out->vertex[out->n_vertices][1] = v->point().y();
+        vertices.emplace(v, static_cast<int32_t>(out->n_vertices++));
+    }
+    for (const auto &[f, number] : faces) {
+        for (int k = 0; k < 3; k++) {
+            auto other = faces.find(f->neighbor(k));
+            out->triangle[number][k] = vertices.at(f->vertex(k));
+            out->neighbour[number][k] = other == faces.end() ? -1 : other->second;
+        }
+        out->n_triangles++;
+    }
+    return 0;
+}
+
+int make_mesh(brc_context *ctx, double (*corner)[2], size_t n, double max_area, brc_cgal_mesh *out)
+{
+    Mesh mesh;
+    std::vector<Mesh::Vertex_handle> ring;
+    for (size_t i = 0; i < n; i++)
+        ring.push_back(mesh.insert(Mesh::Point(corner[i][0], corner[i][1])));
+    for (size_t i = 0; i < n; i++)
+        mesh.insert_constraint(ring[i], ring[(i + 1) % n]);
+    CGAL::Delaunay_mesher_2<Mesh, Area_criteria> mesher(mesh, Area_criteria(max_area));
+    mesher.refine_mesh();
+    return copy_mesh(ctx, mesh, out);
+}
+
+/* Runs work and turns exceptions into error codes. */
+template <class Work> int guarded(brc_context *ctx, const char *what, Work work)
+{
+    try {
+        return work();
+    } catch (const std::bad_alloc &) {
+        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory in the %s; use fewer grains", what);
+    } catch (const std::exception &e) {
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "the %s failed: %s", what, e.what());
+    } catch (...) {
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "the %s failed", what);
+    }
+}
+
+} /* namespace */
+
+extern "C" int brc_cgal_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
+                              const double centre[3], double half_width, int32_t *hider,
+                              brc_complex *out)
+{
+    return guarded(ctx, "tessellation", [&] {
+        return radius ? make_cells<Regular>(ctx, seed, radius, n, centre, half_width, hider, out)
+                      : make_cells<Delaunay>(ctx, seed, radius, n, centre, half_width, hider, out);
+    });
+}
+
+extern "C" int brc_cgal_triangulate(brc_context *ctx, double (*corner)[2], size_t n,
+                                    double max_area, brc_cgal_mesh *out)
+{
+    return guarded(ctx, "triangle mesher",
+                   [&] { return make_mesh(ctx, corner, n, max_area, out); });
+}
+
+extern "C" void brc_cgal_mesh_free(brc_cgal_mesh *m)
+{
+    std::free(m->vertex);
+    std::free(m->triangle);
+    std::free(m->neighbour);
+    *m = brc_cgal_mesh();
+}
