@@ -102,7 +102,8 @@ static int list_body(struct brc_context *ctx, const struct grid *g, const double
                 BRC_TRY(add_pair(ctx, out, cap, i, j));
         }
     }
-    qsort(out->pair + start, out->n - start, sizeof *out->pair, compare_high);
+    if (out->n > start)
+        qsort(out->pair + start, out->n - start, sizeof *out->pair, compare_high);
     return 0;
 }
 
