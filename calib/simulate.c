@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calib/simulate.h"
+#include "common/run.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { ASSIGNMENT_SIZE = 256, DIR_SIZE = 4096 };
+
+static const char *const test_names[CALIB_N_TESTS] = {"compression", "tension", "brazilian"};
+
+int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, size_t i,
+                     struct brc_param_list list, char *buffer, size_t size)
+{
+    const char *key = trial->variables[i].key;
+    const struct brc_param *p = brc_params_find(list, key);
+    if (!p || p->kind != BRC_REAL)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s is no quantity of the model", trial->model,
+                 key);
+    bool is_pure = strcmp(p->unit, "1") == 0;
+    int n = snprintf(buffer, size, "%s.%s=%.17g%s%s", trial->model, key, trial->x[i],
+                     is_pure ? "" : " ", is_pure ? "" : p->unit);
+    if (n >= (int)size)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "calibration: %s.%s is too long", trial->model, key);
+    return 0;
+}
+
+/* Reads the test's case with the trial's values; pictures are left out. */
+static int read_job(struct brc_context *ctx, const struct calib_simulator *s,
+                    const struct calib_trial *trial, const struct brc_model *model,
+                    struct brc_job *job)
+{
+    char text[CALIB_MAX_VARIABLES][ASSIGNMENT_SIZE];
+    const char *overrides[CALIB_MAX_VARIABLES + 1];
+    if (trial->n > CALIB_MAX_VARIABLES)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %zu variables; allowed at most %d", trial->n,
+                 CALIB_MAX_VARIABLES);
+    for (size_t i = 0; i < trial->n; i++) {
+        BRC_TRY(calib_assignment(ctx, trial, i, model->params, text[i], ASSIGNMENT_SIZE));
+        overrides[i] = text[i];
+    }
+    overrides[trial->n] = "output.plots=off";
+    BRC_TRY(brc_job_read(ctx, job, s->path[trial->test], overrides, (int)trial->n + 1));
+    if (job->test.kind != (int)trial->test)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: %s is given as the %s test, but its test.kind "
+                 "is %s",
+                 s->path[trial->test], test_names[trial->test], test_names[job->test.kind]);
+    return 0;
+}
+
+static int run_job(struct brc_context *ctx, struct calib_simulator *s,
+                   const struct calib_trial *trial, const struct brc_model *model,
+                   const struct brc_job *job, struct brc_summary *out)
+{
+    char dir[DIR_SIZE];
+    struct brc_progress quiet;
+    int test = (int)trial->test;
+    if (snprintf(dir, sizeof dir, "%s/%s", s->dir, test_names[test]) >= DIR_SIZE)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", s->dir);
+    if (!s->has_specimen[test]) {
+        BRC_TRY(brc_specimen_create(ctx, &job->specimen, &s->specimen[test]));
+        s->has_specimen[test] = true;
+    }
+    brc_progress_begin(&quiet, stderr, &trial->model, 1, true);
+    struct brc_run_order order = {.job = job,
+                                  .model = model,
+                                  .specimen = &s->specimen[test],
+                                  .dir = dir,
+                                  .is_forced = true,
+                                  .progress = &quiet};
+    int code = brc_run(ctx, &order, out);
+    brc_progress_end(&quiet);
+    return code;
+}
+
+int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial *trial,
+                   struct brc_summary *out)
+{
+    struct calib_simulator *s = user;
+    const struct brc_model *model;
+    struct brc_job job = {0};
+    if (!s->path[trial->test])
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "calibration: a target needs the %s test, but no case file is "
+                 "given for it",
+                 test_names[trial->test]);
+    BRC_TRY(brc_job_model(ctx, trial->model, &model));
+    int code = read_job(ctx, s, trial, model, &job);
+    if (code == 0)
+        code = run_job(ctx, s, trial, model, &job, out);
+    brc_job_free(&job);
+    return code;
+}
+
+void calib_simulator_free(struct calib_simulator *s)
+{
+    for (int i = 0; i < CALIB_N_TESTS; i++) {
+        if (s->has_specimen[i])
+            brc_specimen_free(&s->specimen[i]);
+        s->has_specimen[i] = false;
+    }
+}

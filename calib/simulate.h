@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runner of an objective that simulates: one case file per test, each specimen made once. */
+#ifndef CALIB_SIMULATE_H
+#define CALIB_SIMULATE_H
+
+#include "calib/objective.h"
+#include "common/specimen.h"
+
+enum { CALIB_N_TESTS = 3, CALIB_MAX_VARIABLES = 32 };
+
+/* Zero all but path and dir before the first run. */
+struct calib_simulator {
+    const char *path[CALIB_N_TESTS]; /* case file by enum brc_test; NULL: no such test */
+    const char *dir;                 /* results of the latest runs, one folder a test */
+    struct brc_specimen specimen[CALIB_N_TESTS];
+    bool has_specimen[CALIB_N_TESTS];
+};
+
+/* To be used as calib_runner.run with a struct calib_simulator as user. */
+int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial *trial,
+                   struct brc_summary *out);
+void calib_simulator_free(struct calib_simulator *s);
+/* "model.key=value unit" of a variable, as --set takes it: the same double when it is read. */
+int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, size_t i,
+                     struct brc_param_list list, char *buffer, size_t size);
+
+#endif
