@@ -50,9 +50,15 @@ static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
     return code;
 }
 
+/* Radius of a cell's sphere; that of equal volume for a plain Voronoi cell. */
+static double sphere_radius(const struct brc_facets *f, int32_t cell)
+{
+    return f->radius[cell] > 0 ? f->radius[cell] : cbrt(3 * f->volume[cell] / (4 * BRC_PI));
+}
+
 static bool is_contact(const struct brc_facets *f, size_t i, double seed_distance, double gap)
 {
-    double radii = f->radius[f->cell[i][0]] + f->radius[f->cell[i][1]];
+    double radii = sphere_radius(f, f->cell[i][0]) + sphere_radius(f, f->cell[i][1]);
     return f->is_contact[i] && seed_distance < radii + gap;
 }
 

@@ -94,7 +94,7 @@ static void bad_rules_are_named(void **state)
     make_facets(0, false, &facets);
     CHECK_FAILS(&ctx, calib_fabric_measure(&ctx, &facets, &rules, &f), BRC_ERR_INPUT,
                 "need a sphero-radius above 0");
-    rules = (struct calib_fabric_rules){.gap = 0};
+    rules = (struct calib_fabric_rules){.gap = -edge};
     CHECK_FAILS(&ctx, calib_fabric_measure(&ctx, &facets, &rules, &f), BRC_ERR_INPUT,
                 "no facet of the specimen is a contact");
     brc_facets_free(&facets);
