@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances of features: vertex to face, vertex to core, edge to edge (eq 1). Points are in the body
+ * frame of the core that owns the face; edges in any common frame. No length or angle is compared
+ * with an absolute number: results scale with the sample. */
+#ifndef POLY_DISTANCE_H
+#define POLY_DISTANCE_H
+
+#include "shape.h"
+
+#include "common/vec.h"
+
+/* Edges count as parallel when the squared sine of their angle is below this. */
+#define POLY_PARALLEL 1e-12
+
+/* The place on a core that is closest to a point. A place is named by a code: 4 x index + kind. */
+enum poly_place { POLY_ON_FACE, POLY_ON_EDGE, POLY_ON_VERTEX };
+
+struct poly_foot {
+    double s;    /* distance, negative inside the core */
+    double n[3]; /* unit, from the core to the point: gradient of s */
+    int32_t place;
+};
+
+static inline int32_t poly_place(int32_t index, enum poly_place kind)
+{
+    return 4 * index + (int32_t)kind;
+}
+
+static inline double poly_height(const struct poly_face *f, const double p[3])
+{
+    return brc_dot(f->n, p) - f->d;
+}
+
+/* Side of the face that the foot of p is farthest outside of; -1 when it is strictly inside. */
+static inline int32_t poly_outside(const struct poly_core *c, const struct poly_face *f,
+                                   const double p[3])
+{
+    int32_t worst = -1;
+    double most = 0;
+    for (int32_t k = f->first; k < f->first + f->n_sides; k++) {
+        double out = brc_dot(c->side[k].m, p) - c->side[k].off;
+        if (out >= most) {
+            most = out;
+            worst = k;
+        }
+    }
+    return worst;
+}
+
+/* True when the foot of p on the plane of the face is strictly inside the face. */
+static inline bool poly_above(const struct poly_core *c, const struct poly_face *f,
+                              const double p[3])
+{
+    const struct poly_side *side = c->side + f->first;
+    for (int32_t k = 0; k < f->n_sides; k++)
+        if (brc_dot(side[k].m, p) >= side[k].off)
+            return false;
+    return true;
+}
+
+/* Face whose plane p is highest above; inside the core this is the nearest face. */
+static inline int32_t poly_highest(const struct poly_core *c, const double p[3], double *height)
+{
+    int32_t best = 0;
+    double most = poly_height(&c->face[0], p);
+    for (int32_t f = 1; f < c->n_faces; f++) {
+        double h = poly_height(&c->face[f], p);
+        if (h > most) {
+            most = h;
+            best = f;
+        }
+    }
+    *height = most;
+    return best;
+}
+
+static inline void poly_foot_face(struct poly_foot *r, const struct poly_core *c, int32_t f,
+                                  double height)
+{
+    r->s = height;
+    brc_copy(r->n, c->face[f].n);
+    r->place = poly_place(f, POLY_ON_FACE);
+}
+
+/* Foot at a point x of the core's surface; on the surface itself the given normal stands in. */
+static inline void poly_foot_point(struct poly_foot *r, const double p[3], const double x[3],
+                                   const double stand_in[3], int32_t place)
+{
+    brc_sub(r->n, p, x);
+    r->s = brc_normalise(r->n, r->n);
+    if (r->s == 0)
+        brc_copy(r->n, stand_in);
+    r->place = place;
+}
+
+/* Distance of p to a closed edge; t is the place of the foot along it. */
+static inline double poly_to_edge(const struct poly_core *c, const struct poly_edge *e,
+                                  const double p[3], double x[3])
+{
+    double r[3];
+    brc_sub(r, p, c->vertex[e->v[0]]);
+    double t = fmin(fmax(brc_dot(r, e->dir), 0), e->length);
+    brc_copy(x, c->vertex[e->v[0]]);
+    brc_axpy(x, t, e->dir);
+    brc_sub(r, p, x);
+    return brc_norm(r);
+}
+
+/* Closest point of the core to p by trying every edge: where the walk does not settle. */
+static inline void poly_foot_search(struct poly_foot *r, const struct poly_core *c,
+                                    const double p[3])
+{
+    double best = HUGE_VAL;
+    for (int32_t f = 0; f < c->n_faces; f++) {
+        double h = poly_height(&c->face[f], p);
+        if (h >= 0 && h < best && poly_above(c, &c->face[f], p)) {
+            best = h;
+            poly_foot_face(r, c, f, h);
+        }
+    }
+    for (int32_t e = 0; e < c->n_edges; e++) {
+        double x[3], d = poly_to_edge(c, &c->edge[e], p, x);
+        if (d < best) {
+            best = d;
+            poly_foot_point(r, p, x, c->face[c->edge[e].face[0]].n, poly_place(e, POLY_ON_EDGE));
+        }
+    }
+}
+
+/* One step of the walk from an edge: the next place, or the same when the foot is on this edge. */
+static inline int32_t poly_walk_edge(struct poly_foot *r, const struct poly_core *c, int32_t index,
+                                     const double p[3])
+{
+    const struct poly_edge *e = &c->edge[index];
+    double q[3], x[3];
+    brc_sub(q, p, c->vertex[e->v[0]]);
+    double t = brc_dot(q, e->dir);
+    if (t <= 0)
+        return poly_place(e->v[0], POLY_ON_VERTEX);
+    if (t >= e->length)
+        return poly_place(e->v[1], POLY_ON_VERTEX);
+    for (int k = 0; k < 2; k++) {
+        const struct poly_side *side = &c->side[e->side[k]];
+        if (brc_dot(side->m, p) < side->off)
+            return poly_place(e->face[k], POLY_ON_FACE);
+    }
+    brc_copy(x, c->vertex[e->v[0]]);
+    brc_axpy(x, t, e->dir);
+    poly_foot_point(r, p, x, c->face[e->face[0]].n, poly_place(index, POLY_ON_EDGE));
+    return r->place;
+}
+
+static inline int32_t poly_walk_vertex(struct poly_foot *r, const struct poly_core *c,
+                                       int32_t index, const double p[3])
+{
+    double q[3], most = 0;
+    int32_t next = -1;
+    brc_sub(q, p, c->vertex[index]);
+    for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
+        const struct poly_edge *e = &c->edge[c->star[k]];
+        double t = e->v[0] == index ? brc_dot(q, e->dir) : -brc_dot(q, e->dir);
+        if (t > most) {
+            most = t;
+            next = c->star[k];
+        }
+    }
+    if (next >= 0)
+        return poly_place(next, POLY_ON_EDGE);
+    poly_foot_point(r, p, c->vertex[index], c->face[c->edge[c->star[c->star_first[index]]].face[0]].n,
+                    poly_place(index, POLY_ON_VERTEX));
+    return r->place;
+}
+
+/* From a face: settled when p is above it; below its plane the highest face is the next. */
+static inline int32_t poly_walk_face(struct poly_foot *r, const struct poly_core *c, int32_t index,
+                                     const double p[3])
+{
+    double h = poly_height(&c->face[index], p);
+    if (h < 0) {
+        int32_t high = poly_highest(c, p, &h);
+        if (h > 0 && high != index)
+            return poly_place(high, POLY_ON_FACE);
+        if (h <= 0) {
+            poly_foot_face(r, c, high, h);
+            return r->place;
+        }
+    }
+    int32_t out = poly_outside(c, &c->face[index], p);
+    if (out >= 0)
+        return poly_place(c->side[out].edge, POLY_ON_EDGE);
+    poly_foot_face(r, c, index, h);
+    return r->place;
+}
+
+/* Signed distance of p to the core: a walk over neighbouring places from a remembered one. The
+ * surface is convex, so where the walk settles is the closest place, wherever it began. */
+static inline void poly_foot_walk(struct poly_foot *r, const struct poly_core *c, const double p[3],
+                                  int32_t place)
+{
+    for (int tries = 0; tries < 32; tries++) {
+        int32_t next = 0, index = place >> 2;
+        r->place = -1;
+        switch (place & 3) {
+        case POLY_ON_FACE:
+            next = poly_walk_face(r, c, index, p);
+            break;
+        case POLY_ON_EDGE:
+            next = poly_walk_edge(r, c, index, p);
+            break;
+        default:
+            next = poly_walk_vertex(r, c, index, p);
+        }
+        if (r->place >= 0)
+            return;
+        place = next;
+    }
+    double h;
+    int32_t high = poly_highest(c, p, &h);
+    if (h <= 0)
+        poly_foot_face(r, c, high, h);
+    else
+        poly_foot_search(r, c, p);
+}
+
+/* Unsigned distance of p to a closed face (eq 1), from outside or inside. */
+static inline void poly_foot_closed(struct poly_foot *r, const struct poly_core *c, int32_t index,
+                                    const double p[3])
+{
+    const struct poly_face *f = &c->face[index];
+    if (poly_outside(c, f, p) < 0) {
+        double h = poly_height(f, p);
+        poly_foot_face(r, c, index, fabs(h));
+        if (h < 0)
+            brc_scale(r->n, r->n, -1);
+        return;
+    }
+    double best = HUGE_VAL, nearest[3] = {0, 0, 0};
+    for (int32_t k = f->first; k < f->first + f->n_sides; k++) {
+        double x[3], d = poly_to_edge(c, &c->edge[c->side[k].edge], p, x);
+        if (d < best) {
+            best = d;
+            brc_copy(nearest, x);
+        }
+    }
+    poly_foot_point(r, p, nearest, f->n, poly_place(index, POLY_ON_FACE));
+}
+
+/* Two edges. The lines' closest points are p0 + ta a and q0 + tb b, with unit a, b; their distance
+ * along cross is the signed gap. Feet are not clamped. */
+struct poly_crossing {
+    double a[3], b[3]; /* unit directions */
+    double c, sin2;    /* cosine, squared sine of the angle */
+    double ta, tb;     /* m, feet along the edges */
+    double cross[3];   /* unit a x b */
+    double d;          /* m, from line a to line b along cross */
+};
+
+/* False when the edges are parallel (relative test). */
+static inline bool poly_cross_edges(struct poly_crossing *x, const double p[2][3], double la,
+                                    const double q[2][3], double lb)
+{
+    double r[3], m[3];
+    for (int i = 0; i < 3; i++) {
+        x->a[i] = (p[1][i] - p[0][i]) / la;
+        x->b[i] = (q[1][i] - q[0][i]) / lb;
+        r[i] = q[0][i] - p[0][i];
+    }
+    brc_cross(m, x->a, x->b);
+    x->sin2 = brc_norm2(m);
+    if (!(x->sin2 > POLY_PARALLEL))
+        return false;
+    x->c = brc_dot(x->a, x->b);
+    double ra = brc_dot(r, x->a), rb = brc_dot(r, x->b), scale = 1 / x->sin2;
+    x->ta = (ra - x->c * rb) * scale;
+    x->tb = (x->c * ra - rb) * scale;
+    brc_scale(x->cross, m, sqrt(scale));
+    x->d = brc_dot(r, x->cross);
+    return true;
+}
+
+/* True when both feet are strictly inside their edges. */
+static inline bool poly_feet_inside(const struct poly_crossing *x, double la, double lb)
+{
+    return x->ta > 0 && x->ta < la && x->tb > 0 && x->tb < lb;
+}
+
+static inline double poly_clamp(double t, double high)
+{
+    return fmin(fmax(t, 0), high);
+}
+
+/* Feet of the closest points of two closed edges (eq 1). Parallel edges: the middle of the part where
+ * they face each other. */
+static inline void poly_closed_feet(const double p[2][3], double la, const double q[2][3],
+                                    double lb, double *ta, double *tb)
+{
+    struct poly_crossing x;
+    double r[3];
+    brc_sub(r, q[0], p[0]);
+    if (!poly_cross_edges(&x, p, la, q, lb)) {
+        double low = brc_dot(r, x.a), high = low + (brc_dot(x.a, x.b) > 0 ? lb : -lb);
+        double from = poly_clamp(fmin(low, high), la), to = poly_clamp(fmax(low, high), la);
+        *ta = (from + to) / 2;
+        *tb = poly_clamp((*ta - low) * (high > low ? 1 : -1), lb);
+        return;
+    }
+    double ra = brc_dot(r, x.a), rb = brc_dot(r, x.b);
+    *ta = poly_clamp(x.ta, la);
+    *tb = *ta * x.c - rb;
+    if (*tb < 0 || *tb > lb) {
+        *tb = poly_clamp(*tb, lb);
+        *ta = poly_clamp(*tb * x.c + ra, la);
+    }
+}
+
+/* Vector from the foot on p to the foot on q. */
+static inline void poly_between_feet(double r[3], const double p[2][3], double la,
+                                     const double q[2][3], double lb, double ta, double tb)
+{
+    for (int i = 0; i < 3; i++)
+        r[i] = q[0][i] + tb / lb * (q[1][i] - q[0][i]) - p[0][i] - ta / la * (p[1][i] - p[0][i]);
+}
+
+/* Distance of two closed edges (eq 1). */
+static inline double poly_edge_distance(const double p[2][3], double la, const double q[2][3],
+                                        double lb)
+{
+    double ta, tb, r[3];
+    poly_closed_feet(p, la, q, lb, &ta, &tb);
+    poly_between_feet(r, p, la, q, lb, ta, tb);
+    return brc_norm(r); /* eq:gt12:1 */
+}
+
+#endif

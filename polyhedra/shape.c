@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "shape.h"
+
+#include "common/vec.h"
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+void poly_shapes_free(struct poly_shapes *s)
+{
+    free(s->vertex_first);
+    free(s->edge_first);
+    free(s->face_first);
+    free(s->side_first);
+    free(s->vertex);
+    free(s->edge);
+    free(s->face);
+    free(s->side);
+    free(s->star_first);
+    free(s->star);
+    memset(s, 0, sizeof *s);
+}
+
+/* Room for n items behind *array; the capacity doubles. */
+static int reserve(struct brc_context *ctx, void *array, size_t *cap, size_t n, size_t size)
+{
+    void **block = array;
+    if (n <= *cap)
+        return 0;
+    size_t wanted = *cap * 2 > n ? *cap * 2 : n + 16;
+    void *grown = brc_realloc(ctx, *block, wanted, size);
+    if (grown == NULL)
+        return BRC_ERR_MEMORY;
+    *block = grown;
+    *cap = wanted;
+    return 0;
+}
+
+static int reserve_bodies(struct brc_context *ctx, struct poly_shapes *s)
+{
+    size_t **index[] = {&s->vertex_first, &s->edge_first, &s->face_first, &s->side_first};
+    size_t cap = s->cap;
+    for (int i = 0; i < 4; i++) {
+        cap = s->cap;
+        BRC_TRY(reserve(ctx, index[i], &cap, s->n + 2, sizeof(size_t)));
+        if (s->n == 0)
+            (*index[i])[0] = 0;
+    }
+    s->cap = cap;
+    return 0;
+}
+
+static int reserve_features(struct brc_context *ctx, struct poly_shapes *s, size_t n_vertices,
+                            size_t n_sides, size_t n_faces)
+{
+    size_t v = s->vertex_first[s->n] + n_vertices, e = s->edge_first[s->n] + n_sides / 2;
+    size_t f = s->face_first[s->n] + n_faces, d = s->side_first[s->n] + n_sides;
+    size_t cap = s->cap_vertices;
+    BRC_TRY(reserve(ctx, &s->star_first, &cap, v + s->n + 1, sizeof(int32_t)));
+    cap = s->cap_vertices;
+    BRC_TRY(reserve(ctx, &s->vertex, &cap, v + s->n + 1, sizeof *s->vertex));
+    s->cap_vertices = cap;
+    cap = s->cap_edges;
+    BRC_TRY(reserve(ctx, &s->star, &cap, e, 2 * sizeof(int32_t)));
+    BRC_TRY(reserve(ctx, &s->edge, &s->cap_edges, e, sizeof *s->edge));
+    BRC_TRY(reserve(ctx, &s->face, &s->cap_faces, f, sizeof *s->face));
+    return reserve(ctx, &s->side, &s->cap_sides, d, sizeof *s->side);
+}
+
+/* Area vector of a loop (half the sum of cross products) about its first vertex, and the mean of
+ * its vertices. */
+static void loop_area(const struct poly_solid *solid, size_t face, double area[3], double mean[3])
+{
+    size_t first = solid->first[face], n = solid->first[face + 1] - first;
+    const int32_t *loop = solid->loop + first;
+    brc_set(area, 0, 0, 0);
+    brc_copy(mean, solid->vertex[loop[0]]);
+    for (size_t k = 1; k < n; k++) {
+        double a[3], b[3], c[3];
+        brc_sub(a, solid->vertex[loop[k]], solid->vertex[loop[0]]);
+        brc_sub(b, solid->vertex[loop[(k + 1) % n]], solid->vertex[loop[0]]);
+        brc_cross(c, a, b);
+        brc_axpy(area, 0.5, c);
+        brc_add(mean, mean, solid->vertex[loop[k]]);
+    }
+    brc_scale(mean, mean, 1 / (double)n);
+}
+
+static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, size_t f,
+                      const double middle[3])
+{
+    struct poly_face *face = s->face + s->face_first[s->n] + f;
+    struct poly_side *side = s->side + s->side_first[s->n] + solid->first[f];
+    size_t first = solid->first[f], n = solid->first[f + 1] - first;
+    double area[3], mean[3], out[3];
+    loop_area(solid, f, area, mean);
+    brc_sub(out, mean, middle);
+    bool inward = brc_dot(area, out) < 0;
+    if (solid->normal != NULL)
+        brc_copy(face->n, solid->normal[f]);
+    else
+        brc_scale(face->n, area, (inward ? -1 : 1) / brc_norm(area));
+    face->area = fabs(brc_dot(area, face->n));
+    face->d = brc_dot(face->n, mean);
+    face->first = (int32_t)first;
+    face->n_sides = (int32_t)n;
+    face->facet = solid->facet != NULL ? solid->facet[f] : -1;
+    for (size_t k = 0; k < n; k++) {
+        side[k].v = solid->loop[first + (inward ? n - 1 - k : k)];
+        side[k].edge = -1;
+    }
+    for (size_t k = 0; k < n; k++) {
+        double along[3];
+        brc_sub(along, solid->vertex[side[(k + 1) % n].v], solid->vertex[side[k].v]);
+        brc_cross(side[k].m, along, face->n);
+        brc_normalise(side[k].m, side[k].m);
+        side[k].off = brc_dot(side[k].m, solid->vertex[side[k].v]);
+    }
+}
+
+static int32_t side_end(const struct poly_face *face, const struct poly_side *side, int32_t k)
+{
+    int32_t last = face->first + face->n_sides - 1;
+    return side[k == last ? face->first : k + 1].v;
+}
+
+/* The side of another face that runs from v1 to v0, or -1. */
+static int32_t find_twin(const struct poly_face *face, size_t n_faces, const struct poly_side *side,
+                         int32_t v0, int32_t v1)
+{
+    for (size_t f = 0; f < n_faces; f++)
+        for (int32_t k = face[f].first; k < face[f].first + face[f].n_sides; k++)
+            if (side[k].v == v1 && side_end(&face[f], side, k) == v0)
+                return k;
+    return -1;
+}
+
+static int32_t face_of_side(const struct poly_face *face, int32_t side)
+{
+    int32_t f = 0;
+    while (side >= face[f].first + face[f].n_sides)
+        f++;
+    return f;
+}
+
+static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
+                      const struct poly_solid *solid)
+{
+    struct poly_face *face = s->face + s->face_first[s->n];
+    struct poly_side *side = s->side + s->side_first[s->n];
+    struct poly_edge *edge = s->edge + s->edge_first[s->n];
+    int32_t n_sides = (int32_t)solid->first[solid->n_faces], n_edges = 0;
+    for (int32_t k = 0; k < n_sides; k++) {
+        if (side[k].edge >= 0)
+            continue;
+        int32_t f = face_of_side(face, k);
+        int32_t v0 = side[k].v, v1 = side_end(&face[f], side, k);
+        int32_t twin = find_twin(face, solid->n_faces, side, v0, v1);
+        if (twin < 0 || side[twin].edge >= 0 || n_edges >= n_sides / 2)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "body %zu: edge %d-%d does not join exactly two faces: not a closed polyhedron",
+                     s->n, v0, v1);
+        struct poly_edge *e = edge + n_edges;
+        e->v[0] = v0;
+        e->v[1] = v1;
+        e->side[0] = k;
+        e->side[1] = twin;
+        e->face[0] = f;
+        e->face[1] = face_of_side(face, twin);
+        brc_sub(e->dir, solid->vertex[v1], solid->vertex[v0]);
+        e->length = brc_normalise(e->dir, e->dir);
+        if (!(e->length > 0))
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "body %zu: edge %d-%d has no length", s->n, v0, v1);
+        side[k].edge = side[twin].edge = n_edges++;
+    }
+    s->edge_first[s->n + 1] = s->edge_first[s->n] + (size_t)n_edges;
+    return 0;
+}
+
+static void fill_star(struct poly_shapes *s, size_t n_vertices)
+{
+    size_t n_edges = s->edge_first[s->n + 1] - s->edge_first[s->n];
+    const struct poly_edge *edge = s->edge + s->edge_first[s->n];
+    int32_t *first = s->star_first + s->vertex_first[s->n] + s->n;
+    int32_t *star = s->star + 2 * s->edge_first[s->n];
+    int32_t n = 0;
+    for (size_t v = 0; v < n_vertices; v++) {
+        first[v] = n;
+        for (size_t e = 0; e < n_edges; e++)
+            if (edge[e].v[0] == (int32_t)v || edge[e].v[1] == (int32_t)v)
+                star[n++] = (int32_t)e;
+    }
+    first[n_vertices] = n;
+}
+
+int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid)
+{
+    size_t n_sides = solid->first[solid->n_faces];
+    double middle[3] = {0, 0, 0};
+    BRC_TRY(reserve_bodies(ctx, s));
+    BRC_TRY(reserve_features(ctx, s, solid->n_vertices, n_sides, solid->n_faces));
+    double(*vertex)[3] = s->vertex + s->vertex_first[s->n];
+    for (size_t v = 0; v < solid->n_vertices; v++) {
+        brc_copy(vertex[v], solid->vertex[v]);
+        brc_axpy(middle, 1 / (double)solid->n_vertices, solid->vertex[v]);
+    }
+    for (size_t f = 0; f < solid->n_faces; f++)
+        fill_face(s, solid, f, middle);
+    BRC_TRY(fill_edges(ctx, s, solid));
+    fill_star(s, solid->n_vertices);
+    s->vertex_first[s->n + 1] = s->vertex_first[s->n] + solid->n_vertices;
+    s->face_first[s->n + 1] = s->face_first[s->n] + solid->n_faces;
+    s->side_first[s->n + 1] = s->side_first[s->n] + n_sides;
+    s->n++;
+    return 0;
+}
+
+int32_t poly_shapes_face_on(const struct poly_shapes *s, size_t body, int32_t facet)
+{
+    struct poly_core c = poly_core_of(s, body);
+    for (int32_t f = 0; f < c.n_faces; f++)
+        if (c.face[f].facet == facet)
+            return f;
+    return -1;
+}
+
+double poly_shapes_reach(const struct poly_shapes *s, size_t body)
+{
+    struct poly_core c = poly_core_of(s, body);
+    double reach = 0;
+    for (int32_t v = 0; v < c.n_vertices; v++)
+        reach = fmax(reach, brc_norm(c.vertex[v]));
+    return reach;
+}
+
+/* Unit quaternion of a rotation matrix, by its largest component. */
+static void quat_from_matrix(double q[4], double m[3][3])
+{
+    double trace = m[0][0] + m[1][1] + m[2][2];
+    if (trace > 0) {
+        double s = 2 * sqrt(trace + 1);
+        q[0] = s / 4;
+        q[1] = (m[2][1] - m[1][2]) / s;
+        q[2] = (m[0][2] - m[2][0]) / s;
+        q[3] = (m[1][0] - m[0][1]) / s;
+        return;
+    }
+    int i = m[1][1] > m[0][0] ? 1 : 0;
+    if (m[2][2] > m[i][i])
+        i = 2;
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    double s = 2 * sqrt(1 + m[i][i] - m[j][j] - m[k][k]);
+    q[0] = (m[k][j] - m[j][k]) / s;
+    q[1 + i] = s / 4;
+    q[1 + j] = (m[j][i] + m[i][j]) / s;
+    q[1 + k] = (m[k][i] + m[i][k]) / s;
+}
+
+int poly_principal(struct brc_context *ctx, const double inertia[3][3], double moment[3],
+                   double q[4])
+{
+    double a[9], value[3], axes[9], m[3][3], cross[3];
+    gsl_matrix_view tensor = gsl_matrix_view_array(a, 3, 3), out = gsl_matrix_view_array(axes, 3, 3);
+    gsl_vector_view values = gsl_vector_view_array(value, 3);
+    for (int i = 0; i < 9; i++)
+        a[i] = inertia[i / 3][i % 3];
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(3);
+    if (work == NULL)
+        BRC_FAIL(ctx, BRC_ERR_MEMORY, "no memory for principal axes");
+    int code = gsl_eigen_symmv(&tensor.matrix, &values.vector, &out.matrix, work);
+    gsl_eigen_symmv_free(work);
+    if (code != GSL_SUCCESS)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "principal axes: %s", gsl_strerror(code));
+    gsl_eigen_symmv_sort(&values.vector, &out.matrix, GSL_EIGEN_SORT_VAL_ASC);
+    brc_copy(moment, value);
+    /* columns are axes: right-handed by the third */
+    double x[3] = {axes[0], axes[3], axes[6]}, y[3] = {axes[1], axes[4], axes[7]};
+    brc_cross(cross, x, y);
+    for (int i = 0; i < 3; i++)
+        brc_set(m[i], x[i], y[i], cross[i]);
+    quat_from_matrix(q, m);
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int i = 0; i < 4; i++)
+        q[i] /= length;
+    return 0;
+}

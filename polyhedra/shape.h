@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cores: the eroded convex polyhedra whose points, rounded by the radius R, are the grains. Vertices,
+ * edges, faces and constant half-planes in the body frame (principal axes, origin at the centre of
+ * mass of the whole cell). Indices of features are local to the body. */
+#ifndef POLY_SHAPE_H
+#define POLY_SHAPE_H
+
+#include "common/error.h"
+
+/* A directed side of a face: from vertex v to the next side's v. A point whose foot on the face's
+ * plane is inside the side has m . x < off. */
+struct poly_side {
+    double m[3]; /* unit, in the plane of the face, outward */
+    double off;
+    int32_t v, edge;
+};
+
+struct poly_face {
+    double n[3]; /* unit, outward */
+    double d;    /* plane n . x = d */
+    double area;
+    int32_t first, n_sides; /* range of sides */
+    int32_t facet;          /* facet of the specimen, -1 when there is none */
+};
+
+struct poly_edge {
+    double dir[3]; /* unit, from v[0] to v[1] */
+    double length;
+    int32_t v[2];
+    int32_t side[2]; /* the sides of the two faces that meet */
+    int32_t face[2];
+};
+
+/* One core, as seen by the distance functions. */
+struct poly_core {
+    const double (*vertex)[3];
+    const struct poly_edge *edge;
+    const struct poly_face *face;
+    const struct poly_side *side;
+    const int32_t *star_first; /* [n_vertices + 1] range in star */
+    const int32_t *star;       /* edges at a vertex */
+    int32_t n_vertices, n_edges, n_faces;
+};
+
+/* The cores of all grains, one after the other. */
+struct poly_shapes {
+    size_t n, cap;
+    size_t *vertex_first, *edge_first, *face_first, *side_first; /* [n + 1] */
+    double (*vertex)[3];
+    struct poly_edge *edge;
+    struct poly_face *face;
+    struct poly_side *side;
+    int32_t *star_first; /* vertices of a body plus one, from vertex_first + body */
+    int32_t *star;       /* from 2 edge_first */
+    size_t cap_vertices, cap_edges, cap_faces, cap_sides;
+};
+
+/* A polyhedron to add: faces as loops of vertex numbers in either sense. */
+struct poly_solid {
+    size_t n_vertices;
+    const double (*vertex)[3]; /* body frame */
+    size_t n_faces;
+    const size_t *first; /* [n_faces + 1] */
+    const int32_t *loop;
+    const double (*normal)[3]; /* outward unit normals; NULL: from the vertices */
+    const int32_t *facet;      /* NULL: none */
+};
+
+void poly_shapes_free(struct poly_shapes *s);
+/* Adds one core; a solid that is not a closed convex polyhedron is an error that names the body. */
+int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid);
+
+/* Face of a body that lies on a facet, or -1 when erosion has removed it. */
+int32_t poly_shapes_face_on(const struct poly_shapes *s, size_t body, int32_t facet);
+/* Largest distance of a vertex from the body's centre. */
+double poly_shapes_reach(const struct poly_shapes *s, size_t body);
+
+/* Principal moments, and the orientation (principal axes to space) of an inertia tensor. */
+int poly_principal(struct brc_context *ctx, const double inertia[3][3], double moment[3],
+                   double q[4]);
+
+/* The shape operation of the model: erosion of every cell by the radius, mass and inertia of the
+ * whole cell (no porosity). */
+int poly_shape(struct brc_sim *sim, void *state);
+
+static inline struct poly_core poly_core_of(const struct poly_shapes *s, size_t body)
+{
+    size_t v = s->vertex_first[body], e = s->edge_first[body], f = s->face_first[body];
+    struct poly_core c = {(const double(*)[3])(s->vertex + v),
+                          s->edge + e,
+                          s->face + f,
+                          s->side + s->side_first[body],
+                          s->star_first + v + body,
+                          s->star + 2 * e,
+                          (int32_t)(s->vertex_first[body + 1] - v),
+                          (int32_t)(s->edge_first[body + 1] - e),
+                          (int32_t)(s->face_first[body + 1] - f)};
+    return c;
+}
+
+#endif
