@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bond law: one pair of faces that were one facet (eqs 11-15). Total displacements of material
- * points carried by both bodies, so that rigid motion of a pair gives no force, whatever the angle. */
+ * points carried by both bodies, so that rigid motion of a pair gives no force, whatever the angle.
+ */
 #ifndef POLY_BOND_H
 #define POLY_BOND_H
 

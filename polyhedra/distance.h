@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances of features: vertex to face, vertex to core, edge to edge (eq 1). Points are in the body
- * frame of the core that owns the face; edges in any common frame. No length or angle is compared
- * with an absolute number: results scale with the sample. */
+/* Distances of features: vertex to face, vertex to core, edge to edge (eq 1). Points are in the
+ * body frame of the core that owns the face; edges in any common frame. No length or angle is
+ * compared with an absolute number: results scale with the sample. */
 #ifndef POLY_DISTANCE_H
 #define POLY_DISTANCE_H
 
@@ -166,7 +166,8 @@ static inline int32_t poly_walk_vertex(struct poly_foot *r, const struct poly_co
     }
     if (next >= 0)
         return poly_place(next, POLY_ON_EDGE);
-    poly_foot_point(r, p, c->vertex[index], c->face[c->edge[c->star[c->star_first[index]]].face[0]].n,
+    poly_foot_point(r, p, c->vertex[index],
+                    c->face[c->edge[c->star[c->star_first[index]]].face[0]].n,
                     poly_place(index, POLY_ON_VERTEX));
     return r->place;
 }
@@ -289,8 +290,8 @@ static inline double poly_clamp(double t, double high)
     return fmin(fmax(t, 0), high);
 }
 
-/* Feet of the closest points of two closed edges (eq 1). Parallel edges: the middle of the part where
- * they face each other. */
+/* Feet of the closest points of two closed edges (eq 1). Parallel edges: the middle of the part
+ * where they face each other. */
 static inline void poly_closed_feet(const double p[2][3], double la, const double q[2][3],
                                     double lb, double *ta, double *tb)
 {

@@ -159,9 +159,10 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
         int32_t v0 = side[k].v, v1 = side_end(&face[f], side, k);
         int32_t twin = find_twin(face, solid->n_faces, side, v0, v1);
         if (twin < 0 || side[twin].edge >= 0 || n_edges >= n_sides / 2)
-            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
-                     "body %zu: edge %d-%d does not join exactly two faces: not a closed polyhedron",
-                     s->n, v0, v1);
+            BRC_FAIL(
+                ctx, BRC_ERR_GEOMETRY,
+                "body %zu: edge %d-%d does not join exactly two faces: not a closed polyhedron",
+                s->n, v0, v1);
         struct poly_edge *e = edge + n_edges;
         e->v[0] = v0;
         e->v[1] = v1;
@@ -262,7 +263,8 @@ int poly_principal(struct brc_context *ctx, const double inertia[3][3], double m
                    double q[4])
 {
     double a[9], value[3], axes[9], m[3][3], cross[3];
-    gsl_matrix_view tensor = gsl_matrix_view_array(a, 3, 3), out = gsl_matrix_view_array(axes, 3, 3);
+    gsl_matrix_view tensor = gsl_matrix_view_array(a, 3, 3),
+                    out = gsl_matrix_view_array(axes, 3, 3);
     gsl_vector_view values = gsl_vector_view_array(value, 3);
     for (int i = 0; i < 9; i++)
         a[i] = inertia[i / 3][i % 3];

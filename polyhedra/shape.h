@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cores: the eroded convex polyhedra whose points, rounded by the radius R, are the grains. Vertices,
- * edges, faces and constant half-planes in the body frame (principal axes, origin at the centre of
- * mass of the whole cell). Indices of features are local to the body. */
+/* Cores: the eroded convex polyhedra whose points, rounded by the radius R, are the grains.
+ * Vertices, edges, faces and constant half-planes in the body frame (principal axes, origin at the
+ * centre of mass of the whole cell). Indices of features are local to the body. */
 #ifndef POLY_SHAPE_H
 #define POLY_SHAPE_H
 
@@ -78,10 +78,6 @@ double poly_shapes_reach(const struct poly_shapes *s, size_t body);
 /* Principal moments, and the orientation (principal axes to space) of an inertia tensor. */
 int poly_principal(struct brc_context *ctx, const double inertia[3][3], double moment[3],
                    double q[4]);
-
-/* The shape operation of the model: erosion of every cell by the radius, mass and inertia of the
- * whole cell (no porosity). */
-int poly_shape(struct brc_sim *sim, void *state);
 
 static inline struct poly_core poly_core_of(const struct poly_shapes *s, size_t body)
 {

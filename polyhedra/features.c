@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "features.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void poly_list_free(struct poly_list *l)
+{
+    free(l->feature);
+    free(l->height);
+    free(l->near);
+    memset(l, 0, sizeof *l);
+}
+
+/* One body of a pair as seen from the other: its vertices in the other's frame. */
+struct side {
+    const struct poly_core *own, *other;
+    const double (*v)[3]; /* own vertices in space */
+    const double *x;      /* the other's pose */
+    const double (*r)[3];
+    double *height;    /* [n_vertices of own][n_faces of other] above the planes */
+    bool *near_vertex; /* may come within reach of the other core */
+    bool *near_edge;
+};
+
+static int reserve(struct brc_context *ctx, struct poly_list *l, size_t heights, size_t nears)
+{
+    if (heights > l->cap_height) {
+        double *grown = brc_realloc(ctx, l->height, 2 * heights, sizeof *grown);
+        if (grown == NULL)
+            return BRC_ERR_MEMORY;
+        l->height = grown;
+        l->cap_height = 2 * heights;
+    }
+    if (nears > l->cap_near) {
+        bool *grown = brc_realloc(ctx, l->near, 2 * nears, sizeof *grown);
+        if (grown == NULL)
+            return BRC_ERR_MEMORY;
+        l->near = grown;
+        l->cap_near = 2 * nears;
+    }
+    return 0;
+}
+
+int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct poly_feature *f)
+{
+    if (l->n == l->cap) {
+        size_t cap = l->cap > 0 ? 2 * l->cap : 64;
+        struct poly_feature *grown = brc_realloc(ctx, l->feature, cap, sizeof *grown);
+        if (grown == NULL)
+            return BRC_ERR_MEMORY;
+        l->feature = grown;
+        l->cap = cap;
+    }
+    l->feature[l->n++] = *f;
+    return 0;
+}
+
+static int add_feature(struct brc_context *ctx, struct poly_list *l, int kind, int32_t i, int32_t j)
+{
+    struct poly_feature f = {.i = i, .j = j, .kind = (uint8_t)kind};
+    return poly_list_add(ctx, l, &f);
+}
+
+/* Heights of the own vertices above the other's planes. Returns the largest gap along one of these
+ * planes: a lower bound of the distance of the cores. */
+static double measure_heights(struct side *s)
+{
+    int32_t n_faces = s->other->n_faces;
+    double gap = -HUGE_VAL;
+    for (int32_t v = 0; v < s->own->n_vertices; v++) {
+        double q[3];
+        poly_to_body(q, s->r, s->x, s->v[v]);
+        for (int32_t f = 0; f < n_faces; f++)
+            s->height[v * n_faces + f] = poly_height(&s->other->face[f], q);
+    }
+    for (int32_t f = 0; f < n_faces; f++) {
+        double lowest = HUGE_VAL;
+        for (int32_t v = 0; v < s->own->n_vertices; v++)
+            lowest = fmin(lowest, s->height[v * n_faces + f]);
+        gap = fmax(gap, lowest);
+    }
+    return gap;
+}
+
+/* A vertex or edge that lies beyond reach of one of the other's planes cannot touch. */
+static void find_near(struct side *s, double reach)
+{
+    int32_t n_faces = s->other->n_faces;
+    for (int32_t v = 0; v < s->own->n_vertices; v++) {
+        double highest = -HUGE_VAL;
+        for (int32_t f = 0; f < n_faces; f++)
+            highest = fmax(highest, s->height[v * n_faces + f]);
+        s->near_vertex[v] = highest < reach;
+    }
+    for (int32_t e = 0; e < s->own->n_edges; e++) {
+        const double *h0 = s->height + s->own->edge[e].v[0] * n_faces;
+        const double *h1 = s->height + s->own->edge[e].v[1] * n_faces;
+        double highest = -HUGE_VAL;
+        for (int32_t f = 0; f < n_faces; f++)
+            highest = fmax(highest, fmin(h0[f], h1[f]));
+        s->near_edge[e] = highest < reach;
+    }
+}
+
+/* Faces of the other core within reach of a vertex; all of them when it is inside. */
+static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct side *s, bool of_b,
+                      int32_t v, double reach)
+{
+    double q[3], highest;
+    poly_to_body(q, s->r, s->x, s->v[v]);
+    poly_highest(s->other, q, &highest);
+    for (int32_t f = 0; f < s->other->n_faces; f++) {
+        struct poly_foot foot;
+        if (fabs(s->height[v * s->other->n_faces + f]) >= reach && highest > 0)
+            continue;
+        poly_foot_closed(&foot, s->other, f, q);
+        if (foot.s < reach || highest <= 0)
+            BRC_TRY(add_feature(ctx, l, of_b ? POLY_VERTEX_B : POLY_VERTEX_A, of_b ? f : v,
+                                of_b ? v : f));
+    }
+    return 0;
+}
+
+static int list_vertices(struct brc_context *ctx, struct poly_list *l, const struct side *s,
+                         bool of_b, enum poly_rule rule, double reach)
+{
+    for (int32_t v = 0; v < s->own->n_vertices; v++) {
+        if (!s->near_vertex[v])
+            continue;
+        if (rule != POLY_MERGED) {
+            BRC_TRY(list_faces(ctx, l, s, of_b, v, reach));
+            continue;
+        }
+        double q[3], h;
+        struct poly_foot foot;
+        poly_to_body(q, s->r, s->x, s->v[v]);
+        poly_foot_walk(&foot, s->other, q, poly_place(poly_highest(s->other, q, &h), POLY_ON_FACE));
+        if (foot.s < reach)
+            BRC_TRY(add_feature(ctx, l, of_b ? POLY_VERTEX_B : POLY_VERTEX_A, of_b ? foot.place : v,
+                                of_b ? v : foot.place));
+    }
+    return 0;
+}
+
+static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct side sides[2],
+                      double reach)
+{
+    const struct side *a = &sides[0], *b = &sides[1];
+    for (int32_t i = 0; i < a->own->n_edges; i++) {
+        if (!a->near_edge[i])
+            continue;
+        const struct poly_edge *ea = &a->own->edge[i];
+        double ends[4][3];
+        brc_copy(ends[0], a->v[ea->v[0]]);
+        brc_copy(ends[1], a->v[ea->v[1]]);
+        for (int32_t j = 0; j < b->own->n_edges; j++) {
+            if (!b->near_edge[j])
+                continue;
+            const struct poly_edge *eb = &b->own->edge[j];
+            brc_copy(ends[2], b->v[eb->v[0]]);
+            brc_copy(ends[3], b->v[eb->v[1]]);
+            if (poly_edge_distance(ends, ea->length, ends + 2, eb->length) < reach)
+                BRC_TRY(add_feature(ctx, l, POLY_EDGES, i, j));
+        }
+    }
+    return 0;
+}
+
+int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
+                       enum poly_rule rule, double skin, double *allowance)
+{
+    size_t ha = (size_t)p->a.n_vertices * (size_t)p->b.n_faces;
+    size_t hb = (size_t)p->b.n_vertices * (size_t)p->a.n_faces;
+    size_t na = (size_t)(p->a.n_vertices + p->a.n_edges);
+    size_t nb = (size_t)(p->b.n_vertices + p->b.n_edges);
+    double reach = p->rest + skin;
+    l->n = 0;
+    BRC_TRY(reserve(ctx, l, ha + hb, na + nb));
+    struct side sides[2] = {
+        {&p->a, &p->b, p->va, p->xb, p->rb, l->height, l->near, l->near + p->a.n_vertices},
+        {&p->b, &p->a, p->vb, p->xa, p->ra, l->height + ha, l->near + na,
+         l->near + na + p->b.n_vertices}};
+    double gap = fmax(measure_heights(&sides[0]), measure_heights(&sides[1]));
+    *allowance = fmax(skin, gap - p->rest);
+    if (gap >= reach)
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        find_near(&sides[k], reach);
+        BRC_TRY(list_vertices(ctx, l, &sides[k], k == 1, rule, reach));
+    }
+    return list_edges(ctx, l, sides, reach);
+}

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Feature pairs of two cores: which can touch (lists), and how they touch now. */
+#ifndef POLY_FEATURES_H
+#define POLY_FEATURES_H
+
+#include "contact.h"
+
+enum poly_rule { POLY_CLOSED, POLY_STRICT, POLY_MERGED };
+enum poly_kind { POLY_VERTEX_A, POLY_VERTEX_B, POLY_EDGES };
+
+/* A feature pair. POLY_VERTEX_A: vertex i of a and face j of b (merged: the place of its foot on
+ * b); POLY_VERTEX_B: face (place) i of a and vertex j of b; POLY_EDGES: edges i and j. */
+struct poly_feature {
+    int32_t i, j;
+    uint8_t kind;
+};
+
+struct poly_list {
+    struct poly_feature *feature;
+    size_t n, cap;
+    double *height; /* work space: planes by vertices */
+    size_t cap_height;
+    bool *near;
+    size_t cap_near;
+};
+
+/* Two bodies in space. */
+struct poly_pair {
+    struct poly_core a, b;
+    const double *xa, *xb;           /* centres */
+    const double (*ra)[3], (*rb)[3]; /* rotation matrices, body to space */
+    const double (*va)[3], (*vb)[3]; /* core vertices in space */
+    double rest;                     /* m, R1 + R2: distance without overlap */
+    double ell;                      /* m, smoothing length of `merged` */
+};
+
+void poly_list_free(struct poly_list *l);
+int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct poly_feature *f);
+/* Lists every feature pair whose closed distance is below rest + skin. *allowance is how far the
+ * bodies may come nearer before another pair could touch. */
+int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
+                       enum poly_rule rule, double skin, double *allowance);
+
+static inline void poly_to_body(double r[3], const double m[3][3], const double x[3],
+                                const double v[3])
+{
+    double d[3];
+    brc_sub(d, v, x);
+    for (int k = 0; k < 3; k++)
+        r[k] = m[0][k] * d[0] + m[1][k] * d[1] + m[2][k] * d[2];
+}
+
+static inline void poly_to_space(double r[3], const double m[3][3], const double v[3])
+{
+    for (int k = 0; k < 3; k++)
+        r[k] = brc_dot(m[k], v);
+}
+
+/* Touch of a vertex v (in space) with the core c at x, rm. sign: +1 when the vertex belongs to b.
+ */
+static inline void poly_vertex_touch(struct poly_touch *t, const struct poly_foot *foot,
+                                     const double rm[3][3], const double v[3], double sign,
+                                     double rest)
+{
+    double out[3];
+    poly_to_space(out, rm, foot->n);
+    t->delta = rest - foot->s; /* eq:gt12:5 */
+    t->weight = 1;
+    t->graded = false;
+    brc_scale(t->n, out, sign); /* eq:gt12:3 */
+    for (int k = 0; k < 3; k++)
+        t->x[k] = v[k] - 0.5 * foot->s * out[k];
+}
+
+/* Vertex against a face by the rules `strict` and `closed`. A vertex inside the core counts once,
+ * at its nearest face, with a negative distance. */
+static inline bool poly_foot_on_face(struct poly_foot *foot, const struct poly_core *c,
+                                     int32_t face, const double q[3], const enum poly_rule rule,
+                                     double rest)
+{
+    const struct poly_face *f = &c->face[face];
+    double h = poly_height(f, q);
+    if (h >= rest)
+        return false;
+    if (h < 0) {
+        double highest;
+        int32_t nearest = poly_highest(c, q, &highest);
+        if (highest <= 0) {
+            poly_foot_face(foot, c, nearest, highest);
+            return nearest == face;
+        }
+    }
+    if (poly_above(c, f, q)) {
+        poly_foot_face(foot, c, face, h);
+        if (h < 0) {
+            foot->s = -h;
+            brc_scale(foot->n, foot->n, -1);
+        }
+        return foot->s < rest;
+    }
+    if (rule == POLY_STRICT)
+        return false;
+    poly_foot_closed(foot, c, face, q);
+    return foot->s < rest; /* eq:gt12:2 */
+}
+
+/* Gradient parts of a vertex spring: its weight falls towards the vertices u of the other core. */
+static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], const double (*u)[3],
+                                     int32_t n, double sign, const struct poly_pair *p)
+{
+    double grad[3], arm[3];
+    t->weight = poly_vertex_weight(v, u, n, p->rest * p->rest, p->ell * p->ell, grad);
+    t->graded = t->weight < 1;
+    if (!t->graded)
+        return;
+    brc_scale(t->g, grad, sign);
+    brc_sub(arm, v, t->x);
+    brc_cross(t->c, arm, t->g);
+}
+
+/* Vertex v (in space) of one body against the core c of the other. *place is the face, or under
+ * `merged` the remembered place, which is updated. */
+static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pair *p,
+                                     const bool of_b, int32_t vertex, int32_t *place,
+                                     const enum poly_rule rule)
+{
+    const struct poly_core *c = of_b ? &p->a : &p->b;
+    const double(*rm)[3] = of_b ? p->ra : p->rb;
+    const double *v = of_b ? p->vb[vertex] : p->va[vertex];
+    double q[3], sign = of_b ? 1 : -1;
+    struct poly_foot foot;
+    poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
+    if (rule != POLY_MERGED) {
+        if (!poly_foot_on_face(&foot, c, *place, q, rule, p->rest))
+            return false;
+        poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
+        return true;
+    }
+    poly_foot_walk(&foot, c, q, *place);
+    *place = foot.place;
+    if (foot.s >= p->rest)
+        return false;
+    poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
+    poly_weigh_vertex(t, v, of_b ? p->va : p->vb, c->n_vertices, sign, p);
+    return true;
+}
+
+/* Edges that cross with inside feet. The side on which they met stays in *active (1 or 2), so that
+ * edges that have passed through each other are still pushed back. */
+static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_pair *p,
+                                       const struct poly_edge *ea, const struct poly_edge *eb,
+                                       const double ends[4][3], uint8_t *active,
+                                       const enum poly_rule rule)
+{
+    struct poly_crossing x;
+    if (!poly_cross_edges(&x, ends, ea->length, ends + 2, eb->length))
+        return false;
+    if (fabs(x.d) >= p->rest || !poly_feet_inside(&x, ea->length, eb->length))
+        return false;
+    bool flipped = *active == 0 ? x.d < 0 : *active == 2;
+    double sign = flipped ? -1 : 1, d = sign * x.d;
+    *active = flipped ? 2 : 1;
+    brc_scale(t->n, x.cross, sign); /* eq:gt12:3 */
+    t->delta = p->rest - d;         /* eq:gt12:5 */
+    t->weight = 1;
+    t->graded = false;
+    for (int k = 0; k < 3; k++)
+        t->x[k] = ends[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
+    if (rule == POLY_MERGED)
+        poly_crossing_weight(t, &x, ea->length, eb->length, p->ell, d);
+    return t->weight > 0;
+}
+
+/* Closed edges by eq 1, where a foot is at an end. */
+static inline bool poly_touch_closed_edges(struct poly_touch *t, const struct poly_pair *p,
+                                           const struct poly_edge *ea, const struct poly_edge *eb,
+                                           const double ends[4][3])
+{
+    double ta, tb, r[3];
+    poly_closed_feet(ends, ea->length, ends + 2, eb->length, &ta, &tb);
+    poly_between_feet(r, ends, ea->length, ends + 2, eb->length, ta, tb);
+    double d = brc_normalise(t->n, r);
+    if (d >= p->rest || d == 0)
+        return false;
+    t->delta = p->rest - d;
+    t->weight = 1;
+    t->graded = false;
+    for (int k = 0; k < 3; k++)
+        t->x[k] = ends[0][k] + ta / ea->length * (ends[1][k] - ends[0][k]) + 0.5 * r[k];
+    return true;
+}
+
+static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair *p, int32_t i,
+                                    int32_t j, uint8_t *active, const enum poly_rule rule)
+{
+    const struct poly_edge *ea = &p->a.edge[i], *eb = &p->b.edge[j];
+    double ends[4][3];
+    brc_copy(ends[0], p->va[ea->v[0]]);
+    brc_copy(ends[1], p->va[ea->v[1]]);
+    brc_copy(ends[2], p->vb[eb->v[0]]);
+    brc_copy(ends[3], p->vb[eb->v[1]]);
+    if (poly_touch_crossing(t, p, ea, eb, ends, active, rule))
+        return true;
+    *active = 0;
+    if (rule != POLY_CLOSED)
+        return false;
+    bool touches = poly_touch_closed_edges(t, p, ea, eb, ends);
+    *active = touches;
+    return touches;
+}
+
+/* How a feature pair touches now; *active is its side (0 when apart), i and j may be updated. */
+static inline bool poly_touch(struct poly_touch *t, const struct poly_pair *p, int kind, int32_t *i,
+                              int32_t *j, uint8_t *active, const enum poly_rule rule)
+{
+    if (kind == POLY_EDGES)
+        return poly_touch_edges(t, p, *i, *j, active, rule);
+    bool touches = kind == POLY_VERTEX_A ? poly_touch_vertex(t, p, false, *i, j, rule)
+                                         : poly_touch_vertex(t, p, true, *j, i, rule);
+    *active = touches;
+    return touches;
+}
+
+#endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "poly.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BRC_OWNER struct poly_params
+static const struct brc_param param_list[] = {BRC_PARAM_LIST(POLY_PARAMS)};
+#undef BRC_OWNER
+
+#define BRC_OWNER struct poly_rows
+static const struct brc_field row_fields[] = {POLY_ROW_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+#define BRC_OWNER struct poly_points
+static const struct brc_field point_fields[] = {POLY_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+static int check(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen)
+{
+    const struct poly_params *p = params;
+    const struct brc_facets *f = &specimen->facets;
+    double volume = 0;
+    for (size_t i = 0; i < f->n_cells; i++)
+        volume += f->volume[i];
+    double mean = cbrt(volume / (double)f->n_cells);
+    if (p->radius >= 0.5 * mean)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "polyhedra.radius = %g m is not below half of the mean grain size (%g m): nothing "
+                 "would be left of the grains; a tenth of the grain size is usual",
+                 p->radius, mean);
+    return 0;
+}
+
+static int create(struct brc_sim *sim, void **state)
+{
+    *state = brc_alloc(sim->ctx, 1, sizeof(struct poly_state));
+    return *state != NULL ? 0 : BRC_ERR_MEMORY;
+}
+
+static void release(void *state)
+{
+    struct poly_state *st = state;
+    if (st == NULL)
+        return;
+    poly_shapes_free(&st->shapes);
+    poly_list_free(&st->list);
+    free(st->world);
+    free(st->turn);
+    free(st);
+}
+
+static void select_loop(struct brc_sim *sim, void *state)
+{
+    struct poly_state *st = state;
+    st->pairs_loop = poly_choose_pairs(sim);
+}
+
+static const char *choice(const struct poly_params *p, const char *key, char *buffer, size_t size)
+{
+    const struct brc_param_list list = BRC_PARAMS(param_list, struct poly_params);
+    return brc_params_choice(brc_params_find(list, key), p, buffer, size);
+}
+
+static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
+{
+    const struct poly_params *p = poly_params_of(sim);
+    const struct poly_state *st = state;
+    char features[32], area[32], length[32];
+    double stiff = st->n_bonds > 0 ? st->mean_area / st->mean_length : 0;
+    snprintf(
+        text, size,
+        "Bonded spheropolyhedra: features %s, bond area %s, strain length %s, torsion %s, "
+        "%zu bonds of mean area %.4g m2 and mean strain length %.4g m (stiffness %.4g N/m in "
+        "tension, against %.4g N/m of a feature contact); erosion by R = %.4g m removes %zu of "
+        "the inner facets on a side%s.",
+        choice(p, "features", features, sizeof features), choice(p, "area", area, sizeof area),
+        choice(p, "strain_length", length, sizeof length), p->torsion ? "on" : "off", st->n_bonds,
+        st->mean_area, st->mean_length, p->b_n * stiff, p->k_n, p->radius, st->n_removed,
+        st->n_removed == 0            ? ""
+        : p->area == POLY_AREA_ERODED ? ": they have no bond"
+                                      : ": they are bonded by their own area");
+}
+
+const struct brc_model brc_model_polyhedra = {
+    .name = "polyhedra",
+    .citation = "S.A. Galindo-Torres, D.M. Pedroso, D.J. Williams, L. Li: Breaking processes in "
+                "three-dimensional bonded granular materials with general shapes. Computer Physics "
+                "Communications 183 (2012) 266-277",
+    .params = BRC_PARAMS(param_list, struct poly_params),
+    .contact_fields = BRC_FIELDSET(row_fields, struct poly_rows),
+    .point_fields = BRC_FIELDSET(point_fields, struct poly_points),
+    .flags = BRC_MODEL_ROTATES | BRC_MODEL_ORIENTED,
+    .shape = poly_shape,
+    .bond = poly_open_bonds,
+    .pairs = poly_update_rows,
+    .forces = poly_forces,
+    .walls = poly_walls,
+    .energy = poly_energy,
+    .springs = poly_springs,
+    .check = check,
+    .create = create,
+    .free = release,
+    .select = select_loop,
+    .describe = describe,
+};

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameters, fields and private memory of the bonded spheropolyhedra, shared by this folder. */
+#ifndef POLY_POLY_H
+#define POLY_POLY_H
+
+#include "bond.h"
+#include "contact.h"
+#include "features.h"
+
+#include "common/sim.h"
+
+#define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
+    REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
+    REAL(radius, "m", "1 mm", "(0, inf)", "sphero-radius R of erosion and rounding, eq 2")        \
+    REAL(k_n, "N/m", "1e8 N/m", "(0, inf)", "normal stiffness of a feature contact, eq 4")        \
+    REAL(k_t, "N/m", "1e8 N/m", "[0, inf)", "tangential stiffness of a feature contact, eq 8")    \
+    REAL(mu, "1", "0.3", "[0, 10]", "friction coefficient of grains")                             \
+    REAL(g_n, "1/s", "2529.8 1/s", "[0, inf)", "normal viscosity, eq 10; dynamic regime only")    \
+    REAL(g_t, "1/s", "0 1/s", "[0, inf)", "tangential viscosity, eq 10; dynamic regime only")     \
+    FLAG(bonds, "on", "bonds where the specimen has facets; off: a cohesionless pack")            \
+    FLAG(breakable, "on", "bonds break by eq 15")                                                 \
+    REAL(b_n, "Pa", "20 GPa", "[0, inf)", "normal modulus of the bonds, eq 11")                   \
+    REAL(b_t, "Pa", "20 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13")               \
+    REAL(b_m, "Pa", "3.3 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14")                 \
+    REAL(eps_th, "1", "0.02", "(0, inf)", "strain limit of the bonds, eq 15")                     \
+    FLAG(theta_limit, "on", "eq 15 has its torsion term; off: only strains break bonds")          \
+    REAL(theta_th, "rad", "0.05 rad", "(0, inf)", "torsion limit of the bonds, eq 15")            \
+    CHOICE(                                                                                       \
+        strain_length, "gap|centres", "centres",                                                  \
+        "strains are per gap between the eroded faces (2 R) or per distance of the cell centres") \
+    CHOICE(area, "eroded|facet", "facet",                                                         \
+           "bond area: mean of the two eroded faces, or the facet's own")                         \
+    FLAG(torsion, "on", "bonds resist torsion, eq 14")                                            \
+    REAL(torsion_length, "m", "0 m", "[0, inf)",                                                  \
+         "length that makes eq 14 a torque; 0: the strain length")                                \
+    CHOICE(features, "closed|strict|merged", "merged",                                            \
+           "feature pairs that are springs: all within reach, eq 1; feet strictly inside; each "  \
+           "physical contact once, with a continuous force")
+
+enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
+enum poly_area { POLY_AREA_ERODED, POLY_AREA_FACET };
+
+struct poly_params {
+    BRC_PARAM_MEMBERS(POLY_PARAMS)
+};
+
+/* Contact fields. Tables of work hold force and moment about a of the last step, for the trapezoid
+ * rule of ledger.h; they are written only while the ledger is on. */
+#define POLY_ROW_FIELDS(SCALAR, VECTOR)                                                         \
+    SCALAR(double, wake, BRC_STATE, "m", "travel of a and b at which features are listed anew") \
+    VECTOR(double, ca, 3, BRC_STATE, "m", "material point of the bond in the frame of a")       \
+    VECTOR(double, cb, 3, BRC_STATE, "m", "the same in the frame of b")                         \
+    VECTOR(double, na, 3, BRC_STATE, "1", "normal of the face of a, outward, in its frame")     \
+    VECTOR(double, nb, 3, BRC_STATE, "1", "normal of the face of b, outward, in its frame")     \
+    VECTOR(double, ta, 3, BRC_STATE, "1", "tangent of the bond in the frame of a")              \
+    VECTOR(double, tb, 3, BRC_STATE, "1", "the same direction at the start, in the frame of b") \
+    SCALAR(double, area, BRC_STATE, "m2", "area of the bond")                                   \
+    SCALAR(double, length, BRC_STATE, "m", "strain length of the bond")                         \
+    VECTOR(double, bond_old, 6, BRC_STATE, "N, N m", "bond force on b, its moment about a")     \
+    VECTOR(double, normal_old, 6, BRC_STATE, "N, N m", "the same of the normal springs")        \
+    VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m", "the same of the viscous forces")
+
+struct poly_rows {
+    POLY_ROW_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+
+/* Points: feature pairs near enough to touch before the row is listed anew. */
+#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                             \
+    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")    \
+    SCALAR(uint8_t, active, BRC_STATE, "1",                                           \
+           "0 apart, 1 in contact, 2 the same with edges whose "                      \
+           "cross product points from b to a")                                        \
+    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge") \
+    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                \
+    SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                    \
+    VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                        \
+    VECTOR(double, xi, 3, BRC_STATE, "m", "tangential displacement, eq 9")
+
+struct poly_points {
+    POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+
+struct poly_state;
+typedef void poly_loop(struct brc_sim *sim, struct poly_state *st);
+
+struct poly_state {
+    struct poly_shapes shapes;
+    /* derived from the poses at each use */
+    double (*world)[3];    /* vertices of all cores in space */
+    double (*turn)[3][3];  /* rotation matrix of each body, platens included */
+    struct poly_list list; /* work space */
+    size_t n_removed;      /* facets that erosion removes on either side */
+    size_t n_bonds;
+    double mean_area, mean_length; /* of the bonds */
+    poly_loop *pairs_loop;
+};
+
+static inline const struct poly_params *poly_params_of(const struct brc_sim *sim)
+{
+    return sim->params;
+}
+
+/* Rotation matrices and core vertices in space for the present poses. */
+void poly_world(const struct brc_sim *sim, const struct poly_state *st);
+
+/* rows.c: initial bonds, candidates, feature lists. */
+int poly_open_bonds(struct brc_sim *sim, void *state);
+int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
+                     const struct brc_candidates *platens);
+/* Lists the features of every row whose bodies have used up its allowance. */
+int poly_list_rows(struct brc_sim *sim, struct poly_state *st);
+int poly_list_walls(struct brc_sim *sim, struct poly_state *st);
+
+/* forces.c, walls.c: the loops; that over pairs is chosen for the present options. */
+void poly_forces(struct brc_sim *sim, void *state);
+void poly_walls(struct brc_sim *sim, void *state);
+/* erode.c: cells become eroded cores with the mass of the whole cell (no porosity). */
+int poly_shape(struct brc_sim *sim, void *state);
+poly_loop *poly_choose_pairs(const struct brc_sim *sim);
+/* A core vertex (in space) against a platen whose body is at `at`; a is the grain, b the platen. */
+bool poly_touch_platen(struct poly_touch *t, const double v[3], const struct brc_platen *platen,
+                       const double at[3], double radius);
+/* The hold of a grip, a bond without torsion (and, held axially, without shear). */
+void poly_hold_law(struct poly_bond_result *r, const struct brc_sim *sim,
+                   const struct poly_state *st, size_t row, struct poly_bond *bond);
+
+/* state.c: stored energy and springs, from state alone. */
+void poly_energy(const struct brc_sim *sim, const void *state, double stored[3]);
+int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
+
+/* Two bodies as the feature functions want them; after poly_world. */
+void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct poly_state *st,
+                  int32_t a, int32_t b);
+/* The halves of the bond of a row (of either set) in space; after poly_world. */
+void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, size_t row,
+                    const struct poly_state *st, const struct brc_bodies *bodies, bool torsion);
+
+/* A feature contact that acts. */
+struct poly_active {
+    int32_t a, b;      /* bodies */
+    size_t row, point; /* of sim->pairs */
+    int kind;          /* enum poly_kind */
+    int32_t i, j;      /* features of a and b */
+    struct poly_touch touch;
+};
+/* Visits the active feature contacts of all grain pairs, computed from the present poses. */
+void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
+                      void (*visit)(void *user, const struct poly_active *active), void *user);
+
+#endif

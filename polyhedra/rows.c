@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which rows exist, and which feature pairs each of them watches. */
+#include "poly.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Skin of a row's feature list, in radii R: a smaller one lists fewer pairs, more often. */
+static const double LIST_SKIN = 0.05;
+/* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
+static const double PLATEN_TOLERANCE = 1e-6;
+
+/* --- bonds ------------------------------------------------------------------------------------ */
+
+static void to_frame(double r[3], const double q[4], const double v[3])
+{
+    double m[3][3];
+    brc_quat_matrix(m, q);
+    brc_mat_mul_t(r, m, v);
+}
+
+static double eroded_area(const struct poly_shapes *s, size_t body, int32_t facet)
+{
+    int32_t f = poly_shapes_face_on(s, body, facet);
+    return f < 0 ? 0 : s->face[s->face_first[body] + (size_t)f].area;
+}
+
+/* Material points, normals and tangents of a row's bond in the frames of its bodies; n from a. */
+static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
+                     const double at[3], const double n[3])
+{
+    const struct brc_bodies *b = &sim->bodies;
+    struct poly_rows *rows = c->model_columns;
+    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
+    double arm[3], back[3], t[3], unused[3];
+    brc_frame(t, unused, n);
+    brc_scale(back, n, -1);
+    brc_sub(arm, at, b->x[ia]);
+    to_frame(rows->ca[row], b->q[ia], arm);
+    to_frame(rows->na[row], b->q[ia], n);
+    to_frame(rows->ta[row], b->q[ia], t);
+    brc_sub(arm, at, b->x[ib]);
+    to_frame(rows->cb[row], b->q[ib], arm);
+    to_frame(rows->nb[row], b->q[ib], back);
+    to_frame(rows->tb[row], b->q[ib], t);
+}
+
+/* Bond of two grains over a facet. */
+static void open_bond(const struct brc_sim *sim, struct poly_state *st, size_t row, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    const struct poly_params *params = poly_params_of(sim);
+    struct brc_contacts *c = (struct brc_contacts *)&sim->pairs;
+    struct poly_rows *rows = c->model_columns;
+    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
+    double d[3], ea = eroded_area(&st->shapes, ia, (int32_t)facet);
+    double eb = eroded_area(&st->shapes, ib, (int32_t)facet);
+    brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
+    c->facet[row] = (int32_t)facet;
+    st->n_removed += ea == 0 || eb == 0;
+    rows->area[row] = f->area[facet];
+    if (params->area == POLY_AREA_ERODED)
+        rows->area[row] = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+    rows->length[row] = params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
+    fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
+    if (!params->bonds || rows->area[row] == 0)
+        return;
+    c->status[row] = BRC_INTACT;
+    st->n_bonds++;
+    st->mean_area += rows->area[row];
+    st->mean_length += rows->length[row];
+}
+
+static bool on_platen(const struct brc_sim *sim, const struct brc_platen *p, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double d[3];
+    brc_sub(d, f->centroid[facet], sim->bodies.x[p->body]);
+    return brc_dot(f->normal[facet], p->n) < -1 + PLATEN_TOLERANCE &&
+           fabs(brc_dot(d, p->n)) < PLATEN_TOLERANCE * sim->rig.length;
+}
+
+/* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
+ * distance of its centre (or the gap R) makes it. */
+static void open_hold(const struct brc_sim *sim, struct poly_state *st, size_t row,
+                      const struct brc_platen *p, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    const struct poly_params *params = poly_params_of(sim);
+    struct brc_contacts *c = (struct brc_contacts *)&sim->platens;
+    struct poly_rows *rows = c->model_columns;
+    double d[3], n[3];
+    brc_sub(d, sim->bodies.x[c->a[row]], sim->bodies.x[p->body]);
+    brc_scale(n, p->n, -1);
+    c->facet[row] = (int32_t)facet;
+    rows->area[row] = params->area == POLY_AREA_FACET
+                          ? f->area[facet]
+                          : eroded_area(&st->shapes, (size_t)c->a[row], (int32_t)facet);
+    rows->length[row] =
+        params->strain_length == POLY_LENGTH_GAP ? params->radius : brc_dot(d, p->n);
+    fix_bond(sim, c, row, f->centroid[facet], n);
+    if (p->grip != BRC_GRIP_NONE && rows->area[row] > 0)
+        c->status[row] = BRC_INTACT;
+}
+
+static int compare_pairs(const void *x, const void *y)
+{
+    const int32_t *p = x, *q = y;
+    if (p[0] != q[0])
+        return p[0] < q[0] ? -1 : 1;
+    return (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+static int open_platens(struct brc_sim *sim, struct poly_state *st, int32_t (*pair)[2],
+                        size_t *facets)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    size_t n = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        for (int k = 0; k < sim->rig.n_platens && f->cell[i][1] < 0; k++)
+            if (on_platen(sim, &sim->rig.platen[k], i)) {
+                pair[n][0] = f->cell[i][0];
+                pair[n][1] = sim->rig.platen[k].body;
+                facets[n++] = i;
+            }
+    int32_t(*sorted)[2] = brc_alloc(sim->ctx, n, sizeof *sorted);
+    if (sorted == NULL)
+        return BRC_ERR_MEMORY;
+    memcpy(sorted, pair, n * sizeof *sorted);
+    qsort(sorted, n, sizeof *sorted, compare_pairs);
+    int code = brc_contacts_set(sim->ctx, &sim->platens, sorted, n);
+    free(sorted);
+    for (size_t i = 0; code == 0 && i < n; i++) {
+        int64_t row = brc_contacts_find(&sim->platens, pair[i][0], pair[i][1]);
+        open_hold(sim, st, (size_t)row, brc_sim_platen(sim, pair[i][1]), facets[i]);
+    }
+    return code;
+}
+
+int poly_open_bonds(struct brc_sim *sim, void *state)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    struct poly_state *st = state;
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, f->n_facets, sizeof *pair);
+    size_t *facets = brc_alloc(sim->ctx, f->n_facets, sizeof *facets), n = 0;
+    int code = pair != NULL && facets != NULL ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < f->n_facets; i++) {
+        if (f->cell[i][1] < 0 || !f->is_contact[i])
+            continue;
+        memcpy(pair[n], f->cell[i], sizeof *pair);
+        facets[n++] = i;
+    }
+    if (code == 0)
+        code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
+    for (size_t i = 0; code == 0 && i < n; i++)
+        open_bond(sim, st, i, facets[i]);
+    if (st->n_bonds > 0) {
+        st->mean_area /= (double)st->n_bonds;
+        st->mean_length /= (double)st->n_bonds;
+    }
+    if (code == 0)
+        code = open_platens(sim, st, pair, facets);
+    free(pair);
+    free(facets);
+    return code;
+}
+
+/* --- candidates ------------------------------------------------------------------------------- */
+
+static bool is_kept(const struct brc_contacts *c, size_t row)
+{
+    const struct poly_points *points = c->point_columns;
+    if (c->status[row] == BRC_INTACT)
+        return true;
+    for (int32_t k = 0; k < c->np[row]; k++)
+        if (points->weight[c->p0[row] + k] > 0)
+            return true;
+    return false;
+}
+
+/* The candidates, and the rows that are bonded or touch. */
+static int merge_rows(struct brc_context *ctx, struct brc_contacts *c,
+                      const struct brc_candidates *candidates)
+{
+    int32_t(*pair)[2] = brc_alloc(ctx, candidates->n + c->n, sizeof *pair);
+    if (pair == NULL)
+        return BRC_ERR_MEMORY;
+    size_t n = 0, i = 0;
+    for (size_t row = 0; row < c->n; row++) {
+        const int32_t own[2] = {c->a[row], c->b[row]};
+        while (i < candidates->n && compare_pairs(candidates->pair[i], own) < 0)
+            memcpy(pair[n++], candidates->pair[i++], sizeof *pair);
+        bool listed = i < candidates->n && compare_pairs(candidates->pair[i], own) == 0;
+        i += listed;
+        if (listed || is_kept(c, row))
+            memcpy(pair[n++], own, sizeof *pair);
+    }
+    while (i < candidates->n)
+        memcpy(pair[n++], candidates->pair[i++], sizeof *pair);
+    int code = brc_contacts_set(ctx, c, (const int32_t(*)[2])pair, n);
+    free(pair);
+    return code;
+}
+
+int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
+                     const struct brc_candidates *platens)
+{
+    (void)state;
+    BRC_TRY(merge_rows(sim->ctx, &sim->pairs, grains));
+    return merge_rows(sim->ctx, &sim->platens, platens);
+}
+
+/* --- feature lists ---------------------------------------------------------------------------- */
+
+/* The same vertex keeps its point wherever its foot is; other points are told by both features. */
+static bool is_same(const struct poly_points *points, size_t p, const struct poly_feature *f,
+                    bool merged)
+{
+    if (points->kind[p] != f->kind)
+        return false;
+    bool i = points->i[p] == f->i, j = points->j[p] == f->j;
+    if (merged && f->kind == POLY_VERTEX_A)
+        return i;
+    if (merged && f->kind == POLY_VERTEX_B)
+        return j;
+    return i && j;
+}
+
+/* Moves the state of points that act to the front, in order; returns how many. */
+static size_t gather_active(const struct poly_points *points, size_t first, size_t n)
+{
+    size_t kept = first;
+    for (size_t p = first; p < first + n; p++) {
+        if (points->weight[p] <= 0)
+            continue;
+        points->kind[kept] = points->kind[p];
+        points->active[kept] = points->active[p];
+        points->i[kept] = points->i[p];
+        points->j[kept] = points->j[p];
+        points->weight[kept] = points->weight[p];
+        memmove(points->n[kept], points->n[p], sizeof points->n[p]);
+        memmove(points->xi[kept], points->xi[p], sizeof points->xi[p]);
+        kept++;
+    }
+    return kept - first;
+}
+
+static void set_point(const struct poly_points *points, size_t p, const struct poly_feature *f)
+{
+    points->kind[p] = f->kind;
+    points->i[p] = f->i;
+    points->j[p] = f->j;
+    points->active[p] = 0;
+    points->weight[p] = 0;
+    brc_set(points->n[p], 0, 0, 0);
+    brc_set(points->xi[p], 0, 0, 0);
+}
+
+/* The row's points become the listed features; those that act keep their state. A point that acts
+ * is always listed again, because it is within reach. */
+static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t row,
+                          const struct poly_list *list, bool merged)
+{
+    size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
+    size_t n = list->n > kept ? list->n : kept;
+    c->np[row] = (int32_t)kept;
+    BRC_TRY(brc_contacts_points(ctx, c, row, (int32_t)n));
+    struct poly_points *points = c->point_columns;
+    size_t first = (size_t)c->p0[row], next = first + kept;
+    for (size_t k = 0; k < list->n; k++) {
+        size_t p = first;
+        while (p < first + kept && !is_same(points, p, &list->feature[k], merged))
+            p++;
+        if (p == first + kept && next < first + n)
+            set_point(points, next++, &list->feature[k]);
+    }
+    c->np[row] = (int32_t)(next - first);
+    return 0;
+}
+
+static int list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
+{
+    struct brc_contacts *c = &sim->pairs;
+    struct poly_rows *rows = c->model_columns;
+    const struct poly_params *params = poly_params_of(sim);
+    struct poly_pair pair;
+    double allowance;
+    poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
+    BRC_TRY(poly_list_features(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
+                               LIST_SKIN * params->radius, &allowance));
+    rows->wake[row] = sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] + allowance;
+    return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);
+}
+
+static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t row)
+{
+    const struct poly_rows *rows = c->model_columns;
+    return sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] >= rows->wake[row];
+}
+
+int poly_list_rows(struct brc_sim *sim, struct poly_state *st)
+{
+    for (size_t row = 0; row < sim->pairs.n; row++)
+        if (is_awake(sim, &sim->pairs, row))
+            BRC_TRY(list_row(sim, st, row));
+    return 0;
+}
+
+/* Vertices of the grain within the skin of the platen; the lowest of the others is the allowance.
+ */
+static int list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
+{
+    struct brc_contacts *c = &sim->platens;
+    struct poly_rows *rows = c->model_columns;
+    size_t a = (size_t)c->a[row], first = st->shapes.vertex_first[a];
+    size_t n = st->shapes.vertex_first[a + 1] - first;
+    double radius = poly_params_of(sim)->radius, reach = (1 + LIST_SKIN) * radius;
+    double allowance = HUGE_VAL;
+    const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
+    st->list.n = 0;
+    for (size_t v = 0; v < n; v++) {
+        double d[3];
+        brc_sub(d, st->world[first + v], sim->bodies.x[c->b[row]]);
+        double height = brc_dot(d, platen->n);
+        struct poly_feature f = {.i = (int32_t)v, .j = 0, .kind = POLY_VERTEX_A};
+        if (height < reach)
+            BRC_TRY(poly_list_add(sim->ctx, &st->list, &f));
+        else
+            allowance = fmin(allowance, height - radius);
+    }
+    rows->wake[row] = sim->bodies.travel[a] + sim->bodies.travel[c->b[row]] + allowance;
+    return replace_points(sim->ctx, c, row, &st->list, false);
+}
+
+int poly_list_walls(struct brc_sim *sim, struct poly_state *st)
+{
+    for (size_t row = 0; row < sim->platens.n; row++)
+        if (is_awake(sim, &sim->platens, row))
+            BRC_TRY(list_wall(sim, st, row));
+    return 0;
+}

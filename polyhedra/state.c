@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Energy and linearised springs of the present state. */
+#include "step.h"
+
+static bool bond_of_row(struct poly_bond_result *r, struct poly_bond *bond,
+                        const struct brc_sim *sim, const struct poly_state *st, size_t row)
+{
+    const struct poly_params *params = poly_params_of(sim);
+    struct poly_bond_pose pose;
+    if (sim->pairs.status[row] != BRC_INTACT)
+        return false;
+    *bond = poly_bond_of(params, sim->pairs.model_columns, row);
+    poly_pose_bond(&pose, &sim->pairs, row, st, &sim->bodies, params->torsion);
+    poly_bond_law(r, bond, &pose, params->torsion);
+    return true;
+}
+
+static bool touch_of_wall(struct poly_touch *t, const struct brc_sim *sim,
+                          const struct poly_state *st, size_t row, size_t p)
+{
+    const struct brc_contacts *c = &sim->platens;
+    const struct poly_points *points = c->point_columns;
+    size_t v = st->shapes.vertex_first[c->a[row]] + (size_t)points->i[p];
+    return poly_touch_platen(t, st->world[v], brc_sim_platen(sim, c->b[row]),
+                             sim->bodies.x[c->b[row]], poly_params_of(sim)->radius);
+}
+
+/* --- energy ----------------------------------------------------------------------------------- */
+
+struct store {
+    double kn, kt;
+    const struct poly_points *points;
+    double *stored;
+};
+
+static void add_point(const struct store *s, const struct poly_touch *t, size_t p)
+{
+    s->stored[1] += 0.5 * s->kn * t->weight * t->delta * t->delta;
+    s->stored[2] += 0.5 * s->kt * t->weight * brc_norm2(s->points->xi[p]);
+}
+
+static void add_active(void *user, const struct poly_active *active)
+{
+    add_point(user, &active->touch, active->point);
+}
+
+void poly_energy(const struct brc_sim *sim, const void *state, double stored[3])
+{
+    const struct poly_state *st = state;
+    const struct poly_params *p = poly_params_of(sim);
+    struct store s = {poly_pair_stiffness(p->k_n, p->k_n), poly_pair_stiffness(p->k_t, p->k_t),
+                      sim->pairs.point_columns, stored};
+    struct poly_bond bond;
+    struct poly_bond_result r;
+    brc_set(stored, 0, 0, 0);
+    poly_each_active(sim, st, add_active, &s);
+    for (size_t row = 0; row < sim->pairs.n; row++)
+        if (bond_of_row(&r, &bond, sim, st, row))
+            stored[0] += r.energy;
+    const struct brc_contacts *c = &sim->platens;
+    s.points = c->point_columns;
+    for (size_t row = 0; row < c->n; row++) {
+        struct poly_touch t;
+        for (int32_t k = 0; k < c->np[row]; k++)
+            if (touch_of_wall(&t, sim, st, row, (size_t)(c->p0[row] + k)))
+                add_point(&s, &t, (size_t)(c->p0[row] + k));
+        if (c->status[row] != BRC_INTACT)
+            continue;
+        poly_hold_law(&r, sim, st, row, &bond);
+        stored[0] += r.energy;
+    }
+}
+
+/* --- springs ---------------------------------------------------------------------------------- */
+
+struct springs {
+    const struct brc_sim *sim;
+    struct brc_springs *out;
+    double kn, kt;
+    int code;
+};
+
+static void add_spring(struct springs *s, int32_t a, int32_t b, const double x[3],
+                       struct brc_spring *spring)
+{
+    spring->a = a;
+    spring->b = b;
+    brc_sub(spring->ra, x, s->sim->bodies.x[a]);
+    brc_sub(spring->rb, x, s->sim->bodies.x[b]);
+    if (s->code == 0)
+        s->code = brc_springs_add(s->sim->ctx, s->out, spring);
+}
+
+static void add_touch(struct springs *s, int32_t a, int32_t b, const struct poly_touch *t,
+                      double mu)
+{
+    struct brc_spring spring = {.kn = s->kn * t->weight, .ks = mu > 0 ? s->kt * t->weight : 0};
+    brc_copy(spring.n, t->n);
+    add_spring(s, a, b, t->x, &spring);
+}
+
+static void add_active_spring(void *user, const struct poly_active *active)
+{
+    struct springs *s = user;
+    add_touch(s, active->a, active->b, &active->touch, poly_params_of(s->sim)->mu);
+}
+
+/* An intact bond counts with its tension stiffness, even while it is closed: it may open within a
+ * step. */
+static void add_bond(struct springs *s, int32_t a, int32_t b, const struct poly_bond *bond,
+                     const struct poly_bond_result *r)
+{
+    struct brc_spring spring = {.kn = bond->kn, .ks = bond->kt, .kt = bond->ktheta};
+    brc_copy(spring.n, r->n);
+    add_spring(s, a, b, r->x, &spring);
+}
+
+int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
+{
+    const struct poly_state *st = state;
+    const struct poly_params *p = poly_params_of(sim);
+    struct springs s = {sim, out, poly_pair_stiffness(p->k_n, p->k_n),
+                        poly_pair_stiffness(p->k_t, p->k_t), 0};
+    struct poly_bond bond;
+    struct poly_bond_result r;
+    poly_each_active(sim, st, add_active_spring, &s);
+    for (size_t row = 0; row < sim->pairs.n; row++)
+        if (bond_of_row(&r, &bond, sim, st, row))
+            add_bond(&s, sim->pairs.a[row], sim->pairs.b[row], &bond, &r);
+    const struct brc_contacts *c = &sim->platens;
+    for (size_t row = 0; row < c->n; row++) {
+        struct poly_touch t;
+        double mu = brc_sim_platen(sim, c->b[row])->friction;
+        for (int32_t k = 0; k < c->np[row]; k++)
+            if (touch_of_wall(&t, sim, st, row, (size_t)(c->p0[row] + k)))
+                add_touch(&s, c->a[row], c->b[row], &t, mu);
+        if (c->status[row] != BRC_INTACT)
+            continue;
+        poly_hold_law(&r, sim, st, row, &bond);
+        add_bond(&s, c->a[row], c->b[row], &bond, &r);
+    }
+    return s.code;
+}
