@@ -19,6 +19,16 @@ struct poly_touch {
     bool graded;   /* g and c are not zero */
 };
 
+/* A full spring with an overlap; normal and place follow. */
+static inline void poly_touch_begin(struct poly_touch *t, double delta)
+{
+    t->delta = delta;
+    t->weight = 1;
+    t->graded = false;
+    brc_set(t->g, 0, 0, 0);
+    brc_set(t->c, 0, 0, 0);
+}
+
 /* Pair stiffness of two feature stiffnesses: harmonic, equal for equal grains. */
 static inline double poly_pair_stiffness(double a, double b)
 {

@@ -93,7 +93,7 @@ static inline void poly_foot_point(struct poly_foot *r, const double p[3], const
     r->place = place;
 }
 
-/* Distance of p to a closed edge; t is the place of the foot along it. */
+/* Distance of p to a closed edge, whose closest point goes to x. */
 static inline double poly_to_edge(const struct poly_core *c, const struct poly_edge *e,
                                   const double p[3], double x[3])
 {
@@ -111,6 +111,7 @@ static inline void poly_foot_search(struct poly_foot *r, const struct poly_core 
                                     const double p[3])
 {
     double best = HUGE_VAL;
+    poly_foot_face(r, c, 0, best);
     for (int32_t f = 0; f < c->n_faces; f++) {
         double h = poly_height(&c->face[f], p);
         if (h >= 0 && h < best && poly_above(c, &c->face[f], p)) {

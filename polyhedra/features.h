@@ -64,10 +64,8 @@ static inline void poly_vertex_touch(struct poly_touch *t, const struct poly_foo
 {
     double out[3];
     poly_to_space(out, rm, foot->n);
-    t->delta = rest - foot->s; /* eq:gt12:5 */
-    t->weight = 1;
-    t->graded = false;
-    brc_scale(t->n, out, sign); /* eq:gt12:3 */
+    poly_touch_begin(t, rest - foot->s); /* eq:gt12:5 */
+    brc_scale(t->n, out, sign);          /* eq:gt12:3 */
     for (int k = 0; k < 3; k++)
         t->x[k] = v[k] - 0.5 * foot->s * out[k];
 }
@@ -160,10 +158,8 @@ static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_p
     bool flipped = *active == 0 ? x.d < 0 : *active == 2;
     double sign = flipped ? -1 : 1, d = sign * x.d;
     *active = flipped ? 2 : 1;
-    brc_scale(t->n, x.cross, sign); /* eq:gt12:3 */
-    t->delta = p->rest - d;         /* eq:gt12:5 */
-    t->weight = 1;
-    t->graded = false;
+    brc_scale(t->n, x.cross, sign);   /* eq:gt12:3 */
+    poly_touch_begin(t, p->rest - d); /* eq:gt12:5 */
     for (int k = 0; k < 3; k++)
         t->x[k] = ends[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
     if (rule == POLY_MERGED)
@@ -182,9 +178,7 @@ static inline bool poly_touch_closed_edges(struct poly_touch *t, const struct po
     double d = brc_normalise(t->n, r);
     if (d >= p->rest || d == 0)
         return false;
-    t->delta = p->rest - d;
-    t->weight = 1;
-    t->graded = false;
+    poly_touch_begin(t, p->rest - d);
     for (int k = 0; k < 3; k++)
         t->x[k] = ends[0][k] + ta / ea->length * (ends[1][k] - ends[0][k]) + 0.5 * r[k];
     return true;

@@ -215,8 +215,13 @@ void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
         poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
         for (int32_t k = 0; k < c->np[row]; k++) {
             size_t p = (size_t)(c->p0[row] + k);
-            struct poly_active found = {c->a[row],       c->b[row],    row,          p,
-                                        points->kind[p], points->i[p], points->j[p], {{0}}};
+            struct poly_active found = {.a = c->a[row],
+                                        .b = c->b[row],
+                                        .row = row,
+                                        .point = p,
+                                        .kind = points->kind[p],
+                                        .i = points->i[p],
+                                        .j = points->j[p]};
             uint8_t active = points->active[p];
             if (poly_touch(&found.touch, &pair, found.kind, &found.i, &found.j, &active, rule))
                 visit(user, &found);

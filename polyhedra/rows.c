@@ -46,11 +46,11 @@ static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, si
 }
 
 /* Bond of two grains over a facet. */
-static void open_bond(const struct brc_sim *sim, struct poly_state *st, size_t row, size_t facet)
+static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, size_t facet)
 {
     const struct brc_facets *f = &sim->specimen->facets;
     const struct poly_params *params = poly_params_of(sim);
-    struct brc_contacts *c = (struct brc_contacts *)&sim->pairs;
+    struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
     size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
     double d[3], ea = eroded_area(&st->shapes, ia, (int32_t)facet);
@@ -82,12 +82,12 @@ static bool on_platen(const struct brc_sim *sim, const struct brc_platen *p, siz
 
 /* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
  * distance of its centre (or the gap R) makes it. */
-static void open_hold(const struct brc_sim *sim, struct poly_state *st, size_t row,
+static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
                       const struct brc_platen *p, size_t facet)
 {
     const struct brc_facets *f = &sim->specimen->facets;
     const struct poly_params *params = poly_params_of(sim);
-    struct brc_contacts *c = (struct brc_contacts *)&sim->platens;
+    struct brc_contacts *c = &sim->platens;
     struct poly_rows *rows = c->model_columns;
     double d[3], n[3];
     brc_sub(d, sim->bodies.x[c->a[row]], sim->bodies.x[p->body]);

@@ -10,9 +10,7 @@ bool poly_touch_platen(struct poly_touch *t, const double v[3], const struct brc
     double height = brc_dot(d, platen->n);
     if (height >= radius || fabs(brc_dot(d, platen->across)) > platen->half_width)
         return false;
-    t->delta = radius - height; /* eq:gt12:5 */
-    t->weight = 1;
-    t->graded = false;
+    poly_touch_begin(t, radius - height); /* eq:gt12:5 */
     brc_scale(t->n, platen->n, -1);
     brc_copy(t->x, v);
     brc_axpy(t->x, -0.5 * height, platen->n);
