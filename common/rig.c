@@ -227,8 +227,6 @@ int brc_rig_sample(struct brc_sim *sim)
     struct brc_rig *rig = &sim->rig;
     if (sim->step % rig->params.sample_steps != 0)
         return 0;
-    if (rig->force > 0.1 * rig->force_peak && rig->force_peak > 0)
-        rig->unbalanced_max = fmax(rig->unbalanced_max, rig->unbalanced);
     return add_row(sim);
 }
 
@@ -240,6 +238,19 @@ bool brc_rig_done(const struct brc_sim *sim)
         return true;
     return n > 0 && rig->force_peak > 0 && sim->events.table.n > 0 &&
            rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
+}
+
+double brc_rig_unbalanced_max(const struct brc_sim *sim)
+{
+    const struct brc_curve *c = &sim->rig.curve;
+    double largest = 0, peak = sim->rig.force_peak;
+    for (size_t i = 0; i < c->table.n; i++) {
+        if (c->force[i] >= 0.1 * peak)
+            largest = fmax(largest, c->unbalanced[i]);
+        if (c->force[i] == peak)
+            break;
+    }
+    return largest;
 }
 
 /* Rows between the two parts of the peak, on the way up: [*first, *end). */

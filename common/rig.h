@@ -15,10 +15,10 @@ enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
            "compression and tension along z, Brazilian along y; none: no platens")                 \
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                  \
            "adaptive: the rate follows the unbalanced force; fixed: at rate")                      \
-    REAL(rate, "1/s", "2e-7 1/s", "(0, inf)",                                                      \
-         "fixed loading, and start of adaptive: strain rate; in the quasi-static regime one step " \
+    REAL(rate, "1/s", "1e-8 1/s", "(0, inf)",                                                      \
+         "fixed loading: strain rate; adaptive: first and smallest one; in the quasi-static regime one step " \
          "is one second")                                                                          \
-    REAL(target, "1", "0.01", "(0, 1)", "adaptive: unbalanced-force ratio to hold")                \
+    REAL(target, "1", "0.003", "(0, 1)", "adaptive: unbalanced-force ratio to hold")                \
     REAL(rate_max, "1/s", "1e-5 1/s", "(0, inf)", "adaptive: largest strain rate")                 \
     REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain")                \
     REAL(stop_drop, "1", "0.5", "[0, 1)",                                                          \
@@ -29,8 +29,8 @@ enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
            "tension: platens hold only the axial motion of the end grains, or all of it")          \
     REAL(gauge, "1", "0.6", "(0, 1]", "middle part of the specimen where strain is measured")      \
     REAL(plate_width, "m", "0 m", "[0, inf)", "Brazilian: width of the plates; 0: unlimited")      \
-    REAL(modulus_low, "1", "0.1", "[0, 1)", "moduli: least squares from this part of the peak")    \
-    REAL(modulus_high, "1", "0.5", "(0, 1]", "moduli: up to this part of the peak")                \
+    REAL(modulus_low, "1", "0.02", "[0, 1)", "moduli: least squares from this part of the peak")    \
+    REAL(modulus_high, "1", "0.1", "(0, 1]", "moduli: up to this part of the peak")                \
     INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")
 
 struct brc_test_params {
@@ -89,6 +89,8 @@ int brc_rig_sample(struct brc_sim *sim);
 bool brc_rig_done(const struct brc_sim *sim);
 /* The values measured so far; returns how many. docs/measures.md says how. */
 int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS]);
+/* Largest unbalanced ratio of the rows up to the peak that carry a tenth of it or more. */
+double brc_rig_unbalanced_max(const struct brc_sim *sim);
 /* After a loaded state has replaced bodies, curve and scalars. */
 void brc_rig_restore(struct brc_sim *sim);
 

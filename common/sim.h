@@ -47,8 +47,7 @@ extern const struct brc_param_list brc_run_param_list;
     X(int64_t, n_summed, "1", "steps in force_sum")                           \
     X(double, force_peak, "N", "largest row of the curve")                    \
     X(double, strain_peak, "1", "platen strain at the peak")                  \
-    X(double, unbalanced, "1", "mean unbalanced force / mean contact force")  \
-    X(double, unbalanced_max, "1", "its largest value once a tenth of the peak is carried")
+    X(double, unbalanced, "1", "mean unbalanced force / mean contact force")
 
 #define BRC_SIM_SCALARS(X)                                                                        \
     X(int64_t, step, "1", "steps made")                                                           \

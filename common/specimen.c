@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "specimen.h"
+
+#include "hilbert.h"
+#include "packing_cache.h"
+#include "seeds.h"
+#include "tess.h"
+#include "vec.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BRC_OWNER struct brc_specimen_params
+static const struct brc_param specimen_params[] = {BRC_PARAM_LIST(BRC_SPECIMEN_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_specimen_param_list =
+    BRC_PARAMS(specimen_params, struct brc_specimen_params);
+
+enum { MAX_FILE_PLANES = 1000 };
+
+/* Prism of n sides with the area of the circle; the normal of side k is at 90 deg + k 360/n. */
+static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_params *p,
+                         struct brc_convex *domain)
+{
+    int n = p->sides;
+    if (n % 2 != 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "specimen.sides = %d must be even, so that two sides face the platens", n);
+    struct brc_plane *plane = brc_alloc(ctx, (size_t)n + 2, sizeof *plane);
+    if (!plane)
+        return BRC_ERR_MEMORY;
+    double apothem = p->diameter / 2 * sqrt(BRC_PI / (n * tan(BRC_PI / n)));
+    plane[0] = (struct brc_plane){{0, 0, -1}, 0, 0};
+    plane[1] = (struct brc_plane){{0, 0, 1}, p->height, 1};
+    for (int k = 0; k < n; k++) {
+        double angle = 0.5 * BRC_PI + 2 * BRC_PI * k / n;
+        plane[2 + k] = (struct brc_plane){{cos(angle), sin(angle), 0}, apothem, 2 + k};
+    }
+    /* the two loaded sides face y to the last bit */
+    brc_set(plane[2].n, 0, 1, 0);
+    brc_set(plane[2 + n / 2].n, 0, -1, 0);
+    const double centre[3] = {0, 0, p->height / 2};
+    int code =
+        brc_convex_from_planes(ctx, domain, plane, (size_t)n + 2, centre, p->diameter + p->height);
+    free(plane);
+    return code;
+}
+
+/* One plane a line: nx ny nz d in metres; '#' begins a comment. */
+static int read_planes(struct brc_context *ctx, const char *path, struct brc_plane *plane,
+                       size_t *n)
+{
+    FILE *file = fopen(path, "r");
+    if (!file)
+        BRC_FAIL(ctx, BRC_ERR_IO, "specimen.planes: cannot read '%s'", path);
+    char line[512];
+    int code = 0, number = 0;
+    *n = 0;
+    while (code == 0 && fgets(line, sizeof line, file)) {
+        struct brc_plane p = {.id = (int32_t)*n};
+        char *at = line;
+        double value[4];
+        int k = 0;
+        number++;
+        line[strcspn(line, "#\n")] = '\0';
+        if (line[strspn(line, " \t\r")] == '\0')
+            continue;
+        for (; k < 4; k++) {
+            char *end;
+            value[k] = strtod(at, &end);
+            if (end == at || !isfinite(value[k]))
+                break;
+            at = end;
+        }
+        brc_copy(p.n, value);
+        if (k < 4 || *n == MAX_FILE_PLANES || brc_norm(p.n) == 0) {
+            code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                                 "%s:%d: expected 'nx ny nz d' with a normal that is not zero, at "
+                                 "most %d planes",
+                                 path, number, MAX_FILE_PLANES);
+            break;
+        }
+        p.d = value[3] / brc_normalise(p.n, p.n);
+        plane[(*n)++] = p;
+    }
+    fclose(file);
+    return code;
+}
+
+static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_params *p,
+                           struct brc_convex *domain)
+{
+    struct brc_plane *plane = brc_alloc(ctx, MAX_FILE_PLANES, sizeof *plane);
+    if (!plane)
+        return BRC_ERR_MEMORY;
+    size_t n = 0;
+    double reach = 0;
+    const double origin[3] = {0, 0, 0};
+    int code = read_planes(ctx, p->planes, plane, &n);
+    for (size_t i = 0; i < n; i++)
+        reach = fmax(reach, fabs(plane[i].d));
+    if (code == 0)
+        code = brc_convex_from_planes(ctx, domain, plane, n, origin, 1e3 * reach);
+    free(plane);
+    if (code == 0 && domain->n_faces == 0)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "the planes of '%s' enclose nothing", p->planes);
+    return code;
+}
+
+static int make_domain(struct brc_context *ctx, const struct brc_specimen_params *p,
+                       struct brc_convex *domain)
+{
+    const double low[3] = {0, 0, 0};
+    switch ((enum brc_shape)p->shape) {
+    case BRC_SHAPE_BOX:
+        return brc_convex_box(ctx, domain, low, p->size);
+    case BRC_SHAPE_CYLINDER:
+        return make_cylinder(ctx, p, domain);
+    case BRC_SHAPE_POLYHEDRON:
+        return make_polyhedron(ctx, p, domain);
+    }
+    return BRC_ERR_INTERNAL;
+}
+
+int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s)
+{
+    size_t *order = brc_alloc(ctx, s->n, sizeof *order);
+    double(*x)[3] = brc_alloc(ctx, s->n, sizeof *x);
+    double *radius = brc_alloc(ctx, s->n, sizeof *radius);
+    int code = order && x && radius ? brc_hilbert_order(ctx, s->x, s->n, order) : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < s->n; i++) {
+        brc_copy(x[i], s->x[order[i]]);
+        radius[i] = s->radius ? s->radius[order[i]] : 0;
+    }
+    if (code == 0)
+        memcpy(s->x, x, s->n * sizeof *x);
+    if (code == 0 && s->radius)
+        memcpy(s->radius, radius, s->n * sizeof *radius);
+    free(order);
+    free(x);
+    free(radius);
+    return code;
+}
+
+static int make_seeds(struct brc_context *ctx, struct brc_specimen *s, struct brc_seeds *seeds)
+{
+    const struct brc_specimen_params *p = &s->params;
+    if (p->grains == BRC_GRAINS_GRID) {
+        if (p->shape != BRC_SHAPE_BOX)
+            BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.grains: grid needs specimen.shape: box");
+        BRC_TRY(brc_seeds_grid(ctx, p, seeds));
+        return brc_seeds_sort(ctx, seeds);
+    }
+    if (brc_packing_cache_load(ctx, p, &s->domain, seeds))
+        return 0;
+    BRC_TRY(brc_seeds_packing(ctx, p, &s->domain, s->domain_volume, seeds));
+    BRC_TRY(brc_seeds_sort(ctx, seeds));
+    brc_packing_cache_save(ctx, p, &s->domain, seeds);
+    return 0;
+}
+
+/* Each sphere's centre must lie in its own cell. */
+static int check_centres(struct brc_context *ctx, const struct brc_facets *f)
+{
+    for (size_t i = 0; i < f->n_facets; i++) {
+        for (int side = 0; side < 2 && f->cell[i][side] >= 0; side++) {
+            int32_t c = f->cell[i][side];
+            double d[3];
+            brc_sub(d, f->centroid[i], f->seed[c]);
+            if ((side == 0 ? 1 : -1) * brc_dot(d, f->normal[i]) <= 0)
+                BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                         "the centre of sphere %d lies outside of its Laguerre cell; use another "
+                         "specimen.seed, a narrower range of diameters or a smaller "
+                         "specimen.solid_fraction",
+                         c);
+        }
+    }
+    return 0;
+}
+
+static void measure(struct brc_specimen *s)
+{
+    const struct brc_facets *f = &s->facets;
+    double spheres = 0, distance = 0;
+    size_t inner = 0;
+    for (size_t c = 0; c < f->n_cells; c++)
+        spheres += 4 * BRC_PI / 3 * f->radius[c] * f->radius[c] * f->radius[c];
+    for (size_t i = 0; i < f->n_facets; i++) {
+        double d[3];
+        if (f->cell[i][1] < 0 || !f->is_contact[i])
+            continue;
+        brc_sub(d, f->seed[f->cell[i][1]], f->seed[f->cell[i][0]]);
+        distance += brc_norm(d);
+        inner++;
+    }
+    s->solid_fraction = spheres / s->domain_volume;
+    s->mean_contact_distance = inner > 0 ? distance / (double)inner : 0;
+}
+
+static int tessellate(struct brc_context *ctx, struct brc_specimen *s)
+{
+    const struct brc_specimen_params *p = &s->params;
+    if (p->grains == BRC_GRAINS_MESH) {
+        if (p->shape != BRC_SHAPE_CYLINDER)
+            BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.grains: mesh needs specimen.shape: cylinder");
+        return brc_tess_disc(ctx, p->diameter / 2, p->height, p->sides, p->triangle_area,
+                             &s->facets);
+    }
+    struct brc_seeds seeds = {0};
+    int code = make_seeds(ctx, s, &seeds);
+    if (code == 0)
+        code = brc_tess_laguerre(ctx, seeds.x, seeds.radius, seeds.n, &s->domain, p->min_area_ratio,
+                                 NULL, &s->facets);
+    if (code == 0 && seeds.radius)
+        code = check_centres(ctx, &s->facets);
+    brc_seeds_free(&seeds);
+    return code;
+}
+
+int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_params *params,
+                        struct brc_specimen *out)
+{
+    *out = (struct brc_specimen){.params = *params};
+    brc_convex_init(&out->domain);
+    int code = make_domain(ctx, params, &out->domain);
+    if (code == 0) {
+        double centroid[3], inertia[3][3];
+        brc_convex_mass(&out->domain, &out->domain_volume, centroid, inertia);
+        code = tessellate(ctx, out);
+    }
+    if (code == 0 && params->grains == BRC_GRAINS_MESH) {
+        /* the mesh fills its own polygon, which is inscribed in the circle */
+        out->domain_volume = 0;
+        for (size_t c = 0; c < out->facets.n_cells; c++)
+            out->domain_volume += out->facets.volume[c];
+    }
+    if (code == 0)
+        measure(out);
+    else
+        brc_specimen_free(out);
+    return code;
+}
+
+void brc_specimen_free(struct brc_specimen *s)
+{
+    brc_facets_free(&s->facets);
+    brc_convex_free(&s->domain);
+    memset(s, 0, sizeof *s);
+}
+
+void brc_specimen_extent(const struct brc_specimen *s, double low[3], double high[3])
+{
+    const struct brc_facets *f = &s->facets;
+    brc_set(low, HUGE_VAL, HUGE_VAL, HUGE_VAL);
+    brc_set(high, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL);
+    for (size_t i = 0; i < f->n_vertices; i++) {
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], f->vertex[i][k]);
+            high[k] = fmax(high[k], f->vertex[i][k]);
+        }
+    }
+}
