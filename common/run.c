@@ -290,7 +290,7 @@ static void measure(const struct run *r, struct brc_summary *s)
                               .wall_s = r->counts.wall_s,
                               .energy_residual =
                                   sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
-                              .unbalanced_max = sim->rig.unbalanced_max,
+                              .unbalanced_max = brc_rig_unbalanced_max(sim),
                               .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
     snprintf(s->title, sizeof s->title, "%s", job->file.head.title);
