@@ -102,11 +102,11 @@ static inline void law_of_pair(struct poly_spring_law *law, const struct brc_sim
     const struct poly_params *p = poly_params_of(sim);
     const double *mass = sim->bodies.true_mass;
     double effective = mass[a] * mass[b] / (mass[a] + mass[b]);
-    *law = (struct poly_spring_law){.kn = poly_pair_stiffness(p->k_n, p->k_n),
-                                    .kt = poly_pair_stiffness(p->k_t, p->k_t),
+    *law = (struct poly_spring_law){.kn = poly_pair_stiffness(p->kn, p->kn),
+                                    .kt = poly_pair_stiffness(p->kt, p->kt),
                                     .mu = p->mu,
-                                    .gn = p->g_n * effective,
-                                    .gt = p->g_t * effective};
+                                    .gn = p->gn * effective,
+                                    .gt = p->gt * effective};
 }
 
 __attribute__((always_inline)) static inline void
@@ -190,8 +190,8 @@ poly_loop *poly_choose_pairs(const struct brc_sim *sim)
     static poly_loop *const loops[3][8] = {PAIRS_TABLE(POLY_CLOSED), PAIRS_TABLE(POLY_STRICT),
                                            PAIRS_TABLE(POLY_MERGED)};
     const struct poly_params *p = poly_params_of(sim);
-    int friction = p->mu > 0 && p->k_t > 0;
-    int viscous = sim->run.regime == BRC_DYNAMIC && (p->g_n > 0 || p->g_t > 0);
+    int friction = p->mu > 0 && p->kt > 0;
+    int viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
     return loops[p->features][4 * friction + 2 * viscous + (sim->run.ledger ? 1 : 0)];
 }
 

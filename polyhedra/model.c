@@ -76,7 +76,7 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
         "the inner facets on a side%s.",
         choice(p, "features", features, sizeof features), choice(p, "area", area, sizeof area),
         choice(p, "strain_length", length, sizeof length), p->torsion ? "on" : "off", st->n_bonds,
-        st->mean_area, st->mean_length, p->b_n * stiff, p->k_n, p->radius, st->n_removed,
+        st->mean_area, st->mean_length, p->bn * stiff, p->kn, p->radius, st->n_removed,
         st->n_removed == 0            ? ""
         : p->area == POLY_AREA_ERODED ? ": they have no bond"
                                       : ": they are bonded by their own area");

@@ -12,16 +12,16 @@
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
     REAL(radius, "m", "1 mm", "(0, inf)", "sphero-radius R of erosion and rounding, eq 2")        \
-    REAL(k_n, "N/m", "1e8 N/m", "(0, inf)", "normal stiffness of a feature contact, eq 4")        \
-    REAL(k_t, "N/m", "1e8 N/m", "[0, inf)", "tangential stiffness of a feature contact, eq 8")    \
+    REAL(kn, "N/m", "1e8 N/m", "(0, inf)", "normal stiffness of a feature contact, eq 4")         \
+    REAL(kt, "N/m", "1e8 N/m", "[0, inf)", "tangential stiffness of a feature contact, eq 8")     \
     REAL(mu, "1", "0.3", "[0, 10]", "friction coefficient of grains")                             \
-    REAL(g_n, "1/s", "2529.8 1/s", "[0, inf)", "normal viscosity, eq 10; dynamic regime only")    \
-    REAL(g_t, "1/s", "0 1/s", "[0, inf)", "tangential viscosity, eq 10; dynamic regime only")     \
+    REAL(gn, "1/s", "2529.8 1/s", "[0, inf)", "normal viscosity, eq 10; dynamic regime only")     \
+    REAL(gt, "1/s", "0 1/s", "[0, inf)", "tangential viscosity, eq 10; dynamic regime only")      \
     FLAG(bonds, "on", "bonds where the specimen has facets; off: a cohesionless pack")            \
     FLAG(breakable, "on", "bonds break by eq 15")                                                 \
-    REAL(b_n, "Pa", "20 GPa", "[0, inf)", "normal modulus of the bonds, eq 11")                   \
-    REAL(b_t, "Pa", "20 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13")               \
-    REAL(b_m, "Pa", "3.3 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14")                 \
+    REAL(bn, "Pa", "20 GPa", "[0, inf)", "normal modulus of the bonds, eq 11")                    \
+    REAL(bt, "Pa", "20 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13")                \
+    REAL(bm, "Pa", "3.3 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14")                  \
     REAL(eps_th, "1", "0.02", "(0, inf)", "strain limit of the bonds, eq 15")                     \
     FLAG(theta_limit, "on", "eq 15 has its torsion term; off: only strains break bonds")          \
     REAL(theta_th, "rad", "0.05 rad", "(0, inf)", "torsion limit of the bonds, eq 15")            \

@@ -48,7 +48,7 @@ void poly_energy(const struct brc_sim *sim, const void *state, double stored[3])
 {
     const struct poly_state *st = state;
     const struct poly_params *p = poly_params_of(sim);
-    struct store s = {poly_pair_stiffness(p->k_n, p->k_n), poly_pair_stiffness(p->k_t, p->k_t),
+    struct store s = {poly_pair_stiffness(p->kn, p->kn), poly_pair_stiffness(p->kt, p->kt),
                       sim->pairs.point_columns, stored};
     struct poly_bond bond;
     struct poly_bond_result r;
@@ -119,8 +119,8 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
 {
     const struct poly_state *st = state;
     const struct poly_params *p = poly_params_of(sim);
-    struct springs s = {sim, out, poly_pair_stiffness(p->k_n, p->k_n),
-                        poly_pair_stiffness(p->k_t, p->k_t), 0};
+    struct springs s = {sim, out, poly_pair_stiffness(p->kn, p->kn),
+                        poly_pair_stiffness(p->kt, p->kt), 0};
     struct poly_bond bond;
     struct poly_bond_result r;
     poly_each_active(sim, st, add_active_spring, &s);

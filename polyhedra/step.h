@@ -241,9 +241,9 @@ static inline struct poly_bond poly_bond_of(const struct poly_params *p,
 {
     double stiff = rows->area[row] / rows->length[row];
     double arm = p->torsion_length > 0 ? p->torsion_length : rows->length[row];
-    return (struct poly_bond){.kn = p->b_n * stiff,
-                              .kt = p->b_t * stiff,
-                              .ktheta = p->torsion ? p->b_m * rows->area[row] * arm : 0,
+    return (struct poly_bond){.kn = p->bn * stiff,
+                              .kt = p->bt * stiff,
+                              .ktheta = p->torsion ? p->bm * rows->area[row] * arm : 0,
                               .length = rows->length[row],
                               .eps_th = p->eps_th,
                               .theta_th = p->theta_limit ? p->theta_th : HUGE_VAL};

@@ -41,11 +41,11 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
     struct brc_ledger *ledger = sim->run.ledger ? &sim->ledger : NULL;
     double mass = sim->bodies.true_mass[c->a[row]];
-    struct poly_spring_law law = {.kn = poly_pair_stiffness(p->k_n, p->k_n),
-                                  .kt = poly_pair_stiffness(p->k_t, p->k_t),
+    struct poly_spring_law law = {.kn = poly_pair_stiffness(p->kn, p->kn),
+                                  .kt = poly_pair_stiffness(p->kt, p->kt),
                                   .mu = platen->friction,
-                                  .gn = p->g_n * mass,
-                                  .gt = p->g_t * mass};
+                                  .gn = p->gn * mass,
+                                  .gt = p->gt * mass};
     bool friction = law.mu > 0 && law.kt > 0;
     const double(*world)[3] = (const double(*)[3])(st->world + st->shapes.vertex_first[c->a[row]]);
     for (int32_t k = 0; k < c->np[row]; k++) {
@@ -69,7 +69,7 @@ void poly_walls(struct brc_sim *sim, void *state)
     struct poly_state *st = state;
     const struct poly_params *p = poly_params_of(sim);
     struct brc_contacts *c = &sim->platens;
-    bool viscous = sim->run.regime == BRC_DYNAMIC && (p->g_n > 0 || p->g_t > 0);
+    bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
     if (poly_list_walls(sim, st) != 0)
         return;
     const struct poly_rows *rows = c->model_columns;
