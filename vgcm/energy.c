@@ -26,9 +26,12 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
     int flags = law->is_brittle ? VGCM_BRITTLE : 0;
     if (f->phase[i] == VGCM_AFFINE) {
-        double sum[VGCM_N_MOTION];
-        vgcm_force_affine(sum, bond.kn, bond.ks, f->moment[i], f->u[i]);
-        stored[0] += 0.5 * vgcm_force_work(sum, f->u[i]);
+        vgcm_two sum[VGCM_N_MOTION], u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
+        vgcm_two_load6(u, f->u, i, i);
+        vgcm_two_load6(moment, f->moment, i, i);
+        vgcm_force_affine(sum, vgcm_two_of(bond.kn, bond.kn), vgcm_two_of(bond.ks, bond.ks), moment,
+                          u);
+        stored[0] += 0.5 * vgcm_two_work(sum, u)[0];
         return;
     }
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
@@ -67,7 +70,8 @@ void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, d
         add_wall(sim, law, i, stored);
 }
 
-/* Springs of the points of a pair. */
+/* Springs of all points of a facet, those that are broken and open included, as they may close
+ * again; those of a sphere contact while it touches. */
 static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                      struct brc_springs *out)
 {
@@ -80,10 +84,7 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     vgcm_motion_of(&sim->bodies, c, i, 0, &m);
     struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
     brc_copy(spring.n, m.n);
-    double u0 = law->sigma_t / f->kn[i];
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        if (p->dn[j] + p->ds[j] >= 1 && p->un[j] >= u0)
-            continue;
         brc_scale(spring.ra, m.n, m.h);
         brc_axpy(spring.ra, p->s[j], m.s);
         brc_axpy(spring.ra, p->t[j], m.t);
@@ -104,12 +105,10 @@ static int list_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
     const struct vgcm_points *p = vgcm_point_columns(c);
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[i]);
     struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
-    double t[3], u0 = law->sigma_t / f->kn[i];
+    double t[3];
     brc_cross(t, f->n[i], f->s[i]);
     brc_scale(spring.n, platen->n, -1);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        if (platen->grip == BRC_GRIP_NONE && p->un[j] >= u0)
-            continue;
         brc_scale(spring.ra, f->n[i], p->h[j]);
         if (f->phase[i] == VGCM_SPHERE)
             brc_scale(spring.ra, f->n[i], p->un[j] + f->rest[i]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over the contacts of grains: one body, called with literal flags. */
+/* The loop over the contacts of grains: one body, called with literal flags. Facets are taken two
+ * at a time, for the processor's pairs of doubles. */
 #include "vgcm/contact.h"
 
 struct loop {
@@ -9,7 +10,14 @@ struct loop {
     struct vgcm_contacts *f;
     struct vgcm_points *p;
     struct vgcm_energy energy;
-    double viscous; /* J, dissipated by viscous forces */
+    vgcm_two stored; /* J, by affine contacts */
+    double viscous;  /* J, dissipated by viscous forces */
+};
+
+/* Facet rows that wait to be done together. */
+struct couple {
+    size_t row[2];
+    int n;
 };
 
 /* Viscosity per area of contact i, over dt: force = this times area times increment. */
@@ -23,8 +31,8 @@ static double drag_of(const struct loop *l, size_t i)
 }
 
 /* Adds the viscous part to the generalised force and its dissipation to the ledger. */
-static inline void add_drag(struct loop *l, size_t i, int flags, const double du[VGCM_N_MOTION],
-                            const double drag[VGCM_N_MOTION], double sum[VGCM_N_MOTION])
+static void add_drag(struct loop *l, size_t i, int flags, const double du[VGCM_N_MOTION],
+                     const double drag[VGCM_N_MOTION], double sum[VGCM_N_MOTION])
 {
     double mean[VGCM_N_MOTION];
     for (int k = 0; k < VGCM_N_MOTION; k++) {
@@ -36,18 +44,32 @@ static inline void add_drag(struct loop *l, size_t i, int flags, const double du
         l->viscous += vgcm_force_work(mean, du);
 }
 
-/* Whether every point stays within its strengths under the affine field u: first by bounds over the
- * facet, then point by point. */
-static inline bool affine_holds(const struct loop *l, size_t i, const double u[VGCM_N_MOTION])
+static void add_drag_affine(struct loop *l, const struct couple *rows, int flags,
+                            const struct vgcm_motion_two *m, vgcm_two sum[VGCM_N_MOTION])
+{
+    vgcm_two moment[VGCM_N_MOMENTS], drag[VGCM_N_MOTION];
+    size_t i = rows->row[0], j = rows->row[1];
+    vgcm_two c = vgcm_two_of(drag_of(l, i), drag_of(l, j));
+    vgcm_two_load6(moment, l->f->moment, i, j);
+    vgcm_force_affine(drag, c, c, moment, m->du);
+    for (int lane = 0; lane < rows->n; lane++) {
+        double du[VGCM_N_MOTION], part[VGCM_N_MOTION], whole[VGCM_N_MOTION];
+        for (int k = 0; k < VGCM_N_MOTION; k++) {
+            du[k] = m->du[k][lane];
+            part[k] = drag[k][lane];
+            whole[k] = sum[k][lane];
+        }
+        add_drag(l, rows->row[lane], flags, du, part, whole);
+        for (int k = 0; k < VGCM_N_MOTION; k++)
+            sum[k][lane] = whole[k];
+    }
+}
+
+/* Whether each point of row i stays within its strengths under the affine field u. */
+static bool points_hold(const struct loop *l, size_t i, const double u[VGCM_N_MOTION])
 {
     const struct vgcm_law *law = l->law;
-    double kn = l->f->kn[i], ks = law->eta * kn, rim = l->f->rim[i];
-    double bend = sqrt(u[VGCM_BEND_S] * u[VGCM_BEND_S] + u[VGCM_BEND_T] * u[VGCM_BEND_T]);
-    double slip = sqrt(u[VGCM_S] * u[VGCM_S] + u[VGCM_T] * u[VGCM_T]);
-    double pull = kn * (u[VGCM_OPEN] + rim * bend);
-    double shear = ks * (slip + rim * fabs(u[VGCM_TWIST]));
-    if (pull <= law->sigma_t && shear <= law->tau - law->mu * pull)
-        return true;
+    double kn = l->f->kn[i], ks = law->eta * kn;
     for (size_t j = (size_t)l->c->p0[i], end = j + (size_t)l->c->np[i]; j < end; j++) {
         double at[3];
         vgcm_motion_at(at, u, l->p->s[j], l->p->t[j]);
@@ -59,35 +81,64 @@ static inline bool affine_holds(const struct loop *l, size_t i, const double u[V
     return true;
 }
 
-static inline bool affine_row(struct loop *l, size_t i, int flags, const struct vgcm_motion *m)
+/* Bounds over the facets first; a row that fails them is looked at point by point. */
+VGCM_INLINE bool affine_holds(const struct loop *l, const struct couple *rows, vgcm_two kn,
+                              const vgcm_two u[VGCM_N_MOTION])
 {
-    double u[VGCM_N_MOTION], middle[VGCM_N_MOTION], sum[VGCM_N_MOTION];
-    double kn = l->f->kn[i], ks = l->law->eta * kn;
-    for (int k = 0; k < VGCM_N_MOTION; k++) {
-        u[k] = l->f->u[i][k] + m->du[k]; /* eq:vgcm:14 */
-        middle[k] = l->f->u[i][k] + 0.5 * m->du[k];
+    const struct vgcm_law *law = l->law;
+    vgcm_two rim = vgcm_two_of(l->f->rim[rows->row[0]], l->f->rim[rows->row[1]]);
+    vgcm_two bend = vgcm_two_abs(u[VGCM_BEND_S]) + vgcm_two_abs(u[VGCM_BEND_T]);
+    vgcm_two pull = kn * (u[VGCM_OPEN] + rim * bend), ks = law->eta * kn;
+    vgcm_two left = law->tau - law->mu * pull - ks * rim * vgcm_two_abs(u[VGCM_TWIST]);
+    vgcm_two slip2 = ks * ks * (u[VGCM_S] * u[VGCM_S] + u[VGCM_T] * u[VGCM_T]);
+    for (int lane = 0; lane < rows->n; lane++) {
+        if (pull[lane] <= law->sigma_t && left[lane] >= 0 && slip2[lane] <= left[lane] * left[lane])
+            continue;
+        double one[VGCM_N_MOTION];
+        for (int k = 0; k < VGCM_N_MOTION; k++)
+            one[k] = u[k][lane];
+        if (!points_hold(l, rows->row[lane], one))
+            return false;
     }
-    if (!affine_holds(l, i, u))
-        return false;
-    if (flags & VGCM_LEDGER) {
-        vgcm_force_affine(sum, kn, ks, l->f->moment[i], middle);
-        l->energy.bond += vgcm_force_work(sum, m->du);
-    }
-    vgcm_force_affine(sum, kn, ks, l->f->moment[i], u); /* eq:vgcm:15 eq:vgcm:17 */
-    if (flags & VGCM_VISCOUS) {
-        double drag[VGCM_N_MOTION], c = drag_of(l, i);
-        vgcm_force_affine(drag, c, c, l->f->moment[i], m->du);
-        add_drag(l, i, flags, m->du, drag, sum);
-    }
-    vgcm_force_apply(l->c, i, m, sum);
+    return true;
+}
+
+/* Both rows as affine fields; false, with nothing changed, when a point leaves the elastic range.
+ */
+VGCM_INLINE bool affine_rows(struct loop *l, const struct couple *rows, int flags,
+                             const struct vgcm_motion_two *m)
+{
+    size_t i = rows->row[0], j = rows->row[1];
+    vgcm_two u[VGCM_N_MOTION], old[VGCM_N_MOTION], moment[VGCM_N_MOMENTS], sum[VGCM_N_MOTION];
+    vgcm_two kn = vgcm_two_of(l->f->kn[i], l->f->kn[j]), ks = l->law->eta * kn;
+    vgcm_two_load6(old, l->f->u, i, j);
     for (int k = 0; k < VGCM_N_MOTION; k++)
-        l->f->u[i][k] = u[k];
-    l->c->gap[i] = u[VGCM_OPEN];
+        u[k] = old[k] + m->du[k]; /* eq:vgcm:14 */
+    if (!affine_holds(l, rows, kn, u))
+        return false;
+    vgcm_two_load6(moment, l->f->moment, i, j);
+    if (flags & VGCM_LEDGER) {
+        for (int k = 0; k < VGCM_N_MOTION; k++)
+            old[k] += 0.5 * m->du[k];
+        vgcm_force_affine(sum, kn, ks, moment, old);
+        vgcm_two work = vgcm_two_work(sum, m->du);
+        l->stored += rows->n == 2 ? work : vgcm_two_of(work[0], 0);
+    }
+    vgcm_force_affine(sum, kn, ks, moment, u); /* eq:vgcm:15 eq:vgcm:17 */
+    if (flags & VGCM_VISCOUS)
+        add_drag_affine(l, rows, flags, m, sum);
+    vgcm_force_apply_two(l->c, i, j, m, sum);
+    for (int k = 0; k < VGCM_N_MOTION; k++) {
+        l->f->u[j][k] = u[k][1];
+        l->f->u[i][k] = u[k][0];
+    }
+    l->c->gap[j] = u[VGCM_OPEN][1];
+    l->c->gap[i] = u[VGCM_OPEN][0];
     return true;
 }
 
 /* Gives each point its own state, that of the affine field so far. */
-static void leave_affine(struct loop *l, size_t i)
+static __attribute__((noinline)) void leave_affine(struct loop *l, size_t i)
 {
     double ks = l->law->eta * l->f->kn[i];
     for (size_t j = (size_t)l->c->p0[i], end = j + (size_t)l->c->np[i]; j < end; j++) {
@@ -102,7 +153,8 @@ static void leave_affine(struct loop *l, size_t i)
     l->f->phase[i] = VGCM_POINTS;
 }
 
-static void add_event(struct loop *l, size_t i, size_t j, const struct vgcm_motion *m)
+static __attribute__((noinline)) void add_event(struct loop *l, size_t i, size_t j,
+                                                const struct vgcm_motion *m)
 {
     const struct brc_contacts *c = l->c;
     struct brc_event event = {.a = c->a[i],
@@ -138,14 +190,13 @@ static inline void point_drag(double drag[VGCM_N_MOTION], double c, const double
 /* What the points of a row add up to. */
 struct row_sums {
     double force[VGCM_N_MOTION], drag[VGCM_N_MOTION];
-    double area, moment; /* of the springs that count: for the stable step */
-    double opening;      /* m, the smallest */
-    int n_whole;         /* points that are not broken */
+    double opening; /* m, the smallest */
+    int n_whole;    /* points that are not broken */
 };
 
-static inline void step_point(struct loop *l, size_t i, size_t j, int flags,
-                              const struct vgcm_bond *bond, const struct vgcm_motion *m,
-                              struct row_sums *sums)
+VGCM_INLINE void step_point(struct loop *l, size_t i, size_t j, int flags,
+                            const struct vgcm_bond *bond, const struct vgcm_motion *m,
+                            struct row_sums *sums)
 {
     struct vgcm_points *p = l->p;
     double place[2] = {p->s[j], p->t[j]}, area = p->area[j], du[3];
@@ -165,29 +216,13 @@ static inline void step_point(struct loop *l, size_t i, size_t j, int flags,
     vgcm_force_add(sums->force, q.fn, q.fs, q.ft, place);
     if (flags & VGCM_VISCOUS)
         point_drag(sums->drag, drag_of(l, i) * area, du, &q, place);
-    if (is_whole || q.un < bond->u0) {
-        sums->area += area;
-        sums->moment += area * (place[0] * place[0] + place[1] * place[1]);
-    }
     sums->opening = q.un < sums->opening ? q.un : sums->opening;
     sums->n_whole += is_whole;
     if (was_whole && !is_whole)
         add_event(l, i, j, m);
 }
 
-/* Stiffness sums of row i, written when they have changed. */
-static void set_stiffness(struct loop *l, size_t i, const struct vgcm_motion *m, double area,
-                          double moment)
-{
-    double kn = l->f->kn[i], k = kn > l->law->eta * kn ? kn : l->law->eta * kn;
-    double h = m->h, g = m->d - m->h;
-    if (l->c->k[i][0] == k * area)
-        return;
-    brc_set(l->c->k[i], k * area, k * (area * h * h + moment), k * (area * g * g + moment));
-    l->c->k_version++;
-}
-
-static inline void points_row(struct loop *l, size_t i, int flags, const struct vgcm_motion *m)
+VGCM_INLINE void points_row(struct loop *l, size_t i, int flags, const struct vgcm_motion *m)
 {
     struct vgcm_bond bond = vgcm_bond_of(l->law, l->f->kn[i]);
     struct row_sums sums = {.opening = HUGE_VAL};
@@ -198,11 +233,10 @@ static inline void points_row(struct loop *l, size_t i, int flags, const struct 
     vgcm_force_apply(l->c, i, m, sums.force);
     l->c->gap[i] = sums.opening;
     l->c->status[i] = sums.n_whole > 0 ? BRC_INTACT : BRC_BROKEN;
-    set_stiffness(l, i, m, sums.area, sums.moment);
 }
 
 /* Two spheres without a bond: one point that is broken from the start, with the total overlap. */
-static void sphere_row(struct loop *l, size_t i, int flags)
+static __attribute__((noinline)) void sphere_row(struct loop *l, size_t i, int flags)
 {
     struct brc_contacts *c = l->c;
     double branch[3], gap_old = c->gap[i];
@@ -235,35 +269,70 @@ static void sphere_row(struct loop *l, size_t i, int flags)
         add_drag(l, i, flags, m.du, sums.drag, sums.force);
     }
     vgcm_force_apply(c, i, &m, sums.force);
-    set_stiffness(l, i, &m, c->gap[i] < 0 ? area : 0, 0);
+    double k = c->gap[i] < 0 ? fmax(bond.kn, bond.ks) * area : 0, g = m.d - m.h;
+    if ((k > 0) != (c->k[i][0] > 0)) {
+        brc_set(c->k[i], k, k * m.h * m.h, k * g * g);
+        c->k_version++;
+    }
 }
 
-static inline __attribute__((always_inline)) void
-forces_loop(struct brc_sim *sim, const struct vgcm_law *law, const int flags)
+VGCM_INLINE void facet_row(struct loop *l, size_t i, int flags, const struct vgcm_motion_two *m,
+                           int lane)
+{
+    struct couple alone = {{i, i}, 1};
+    struct vgcm_motion_two twice;
+    struct vgcm_motion one;
+    vgcm_motion_pick(&one, m, lane);
+    if (l->f->phase[i] == VGCM_AFFINE) {
+        vgcm_motion_repeat(&twice, &one);
+        if (affine_rows(l, &alone, flags, &twice))
+            return;
+        leave_affine(l, i);
+    }
+    points_row(l, i, flags, &one);
+}
+
+VGCM_INLINE void facet_rows(struct loop *l, struct couple *rows, int flags)
+{
+    size_t i = rows->row[0], j = rows->row[1];
+    struct vgcm_motion_two m;
+    vgcm_motion_of_two(&l->sim->bodies, l->c, i, j, l->sim->dt, &m);
+    for (int k = 0; k < 3; k++) {
+        l->f->n[j][k] = m.n[k][1];
+        l->f->s[j][k] = m.s[k][1];
+        l->f->n[i][k] = m.n[k][0];
+        l->f->s[i][k] = m.s[k][0];
+    }
+    bool is_affine = l->f->phase[i] == VGCM_AFFINE && l->f->phase[j] == VGCM_AFFINE;
+    if (!is_affine || !affine_rows(l, rows, flags, &m))
+        for (int lane = 0; lane < rows->n; lane++)
+            facet_row(l, rows->row[lane], flags, &m, lane);
+    rows->n = 0;
+}
+
+VGCM_INLINE void forces_loop(struct brc_sim *sim, const struct vgcm_law *law, const int flags)
 {
     struct loop l = {.sim = sim,
                      .law = law,
                      .c = &sim->pairs,
                      .f = vgcm_columns(&sim->pairs),
                      .p = vgcm_point_columns(&sim->pairs)};
-    struct vgcm_motion m;
+    struct couple rows = {.n = 0};
     for (size_t i = 0; i < l.c->n; i++) {
         if (l.f->phase[i] == VGCM_SPHERE) {
             sphere_row(&l, i, flags);
             continue;
         }
-        vgcm_motion_of(&sim->bodies, l.c, i, sim->dt, &m);
-        brc_copy(l.f->n[i], m.n);
-        brc_copy(l.f->s[i], m.s);
-        if (l.f->phase[i] == VGCM_AFFINE) {
-            if (affine_row(&l, i, flags, &m))
-                continue;
-            leave_affine(&l, i);
-        }
-        points_row(&l, i, flags, &m);
+        rows.row[rows.n++] = i;
+        if (rows.n == 2)
+            facet_rows(&l, &rows, flags);
+    }
+    if (rows.n == 1) {
+        rows.row[1] = rows.row[0];
+        facet_rows(&l, &rows, flags);
     }
     if (flags & VGCM_LEDGER) {
-        sim->ledger.bond += l.energy.bond;
+        sim->ledger.bond += l.energy.bond + l.stored[0] + l.stored[1];
         sim->ledger.contact_normal += l.energy.normal;
         sim->ledger.contact_shear += l.energy.shear;
         sim->ledger.damage += l.energy.damage;

@@ -12,6 +12,9 @@
 
 #include <math.h>
 
+/* for functions that are called with literal flags: the loops shed what the flags turn off */
+#define VGCM_INLINE static inline __attribute__((always_inline))
+
 /* literal flags of the specialised loops */
 enum vgcm_flags { VGCM_BRITTLE = 1, VGCM_LEDGER = 2, VGCM_VISCOUS = 4, VGCM_N_LOOPS = 8 };
 
@@ -95,8 +98,8 @@ static inline double vgcm_law_damage(const struct vgcm_point *p)
 
 /* Normal force over area [Pa] at the damage d: compression is never weakened; tension follows the
  * secant to the strength at the largest opening u0 + dn wn. */
-static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags,
-                                     const struct vgcm_point *p, double d)
+VGCM_INLINE double vgcm_law_normal(const struct vgcm_bond *bond, int flags,
+                                   const struct vgcm_point *p, double d)
 {
     if (p->un <= 0)
         return bond->kn * p->un;
@@ -109,8 +112,8 @@ static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags,
 }
 
 /* Shear strength [N] under the normal force fn at the damage d. */
-static inline double vgcm_law_limit(const struct vgcm_bond *bond, int flags, double area, double fn,
-                                    double d)
+VGCM_INLINE double vgcm_law_limit(const struct vgcm_bond *bond, int flags, double area, double fn,
+                                  double d)
 {
     double left = flags & VGCM_BRITTLE ? d < 1 : vgcm_law_strength(bond->law, d);
     double limit = bond->law->tau * left * area - bond->law->mu * fn; /* eq:vgcm:33 */
@@ -118,8 +121,8 @@ static inline double vgcm_law_limit(const struct vgcm_bond *bond, int flags, dou
 }
 
 /* Opening by dun: eqs 14, 15, 17 with the secant; damage grows past the largest opening so far. */
-static inline void vgcm_law_open(const struct vgcm_bond *bond, int flags, double area, double dun,
-                                 struct vgcm_point *p)
+VGCM_INLINE void vgcm_law_open(const struct vgcm_bond *bond, int flags, double area, double dun,
+                               struct vgcm_point *p)
 {
     double d = vgcm_law_damage(p);
     p->un += dun; /* eq:vgcm:14 */
@@ -134,8 +137,8 @@ static inline void vgcm_law_open(const struct vgcm_bond *bond, int flags, double
 /* Shear: trial force, then back to the strength, which falls with the slip. In terms of the
  * displacement past the peak the damage grows by excess/(ks ws) on both branches, because
  * ks (slip) = ks ws dD + tau (fall of the strength). Returns 1 when the force was cut. */
-static inline int vgcm_law_slide(const struct vgcm_bond *bond, int flags, double area,
-                                 const double du[3], struct vgcm_point *p)
+VGCM_INLINE int vgcm_law_slide(const struct vgcm_bond *bond, int flags, double area,
+                               const double du[3], struct vgcm_point *p)
 {
     double k = bond->ks * area;
     p->fs -= k * du[1]; /* eq:vgcm:16, eq:vgcm:18 */
@@ -159,9 +162,9 @@ static inline int vgcm_law_slide(const struct vgcm_bond *bond, int flags, double
 
 /* Energies of a step from the state before (old) and the trial shear force's cut; trapezoid rule
  * for each force, see common/ledger.h. */
-static inline void vgcm_law_account(const struct vgcm_bond *bond, double area, const double du[3],
-                                    const struct vgcm_point *old, struct vgcm_point *p,
-                                    struct vgcm_energy *e)
+VGCM_INLINE void vgcm_law_account(const struct vgcm_bond *bond, double area, const double du[3],
+                                  const struct vgcm_point *old, struct vgcm_point *p,
+                                  struct vgcm_energy *e)
 {
     double k = bond->ks * area, inv = k > 0 ? 1 / k : 0;
     double d_old = vgcm_law_damage(old), d = vgcm_law_damage(p);
@@ -176,7 +179,7 @@ static inline void vgcm_law_account(const struct vgcm_bond *bond, double area, c
     if (d_old < 1) {
         double push = p->fn < 0 ? -p->fn : 0;
         rubbed = bond->law->mu * push * sqrt(slip[0] * slip[0] + slip[1] * slip[1]);
-        rubbed = rubbed < slid ? rubbed : slid;
+        rubbed = rubbed < slid ? rubbed : slid > 0 ? slid : 0;
         p->lost += loss + slid;
     }
     e->damage += loss + slid - rubbed;
@@ -195,8 +198,8 @@ static inline void vgcm_law_account(const struct vgcm_bond *bond, double area, c
 
 /* One step of one point: du = opening and slip along s and t in this step. p holds the state before
  * on entry except fn, which is formed here, and the state after on return. */
-static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double area,
-                                 const double du[3], struct vgcm_point *p, struct vgcm_energy *e)
+VGCM_INLINE void vgcm_law_step(const struct vgcm_bond *bond, int flags, double area,
+                               const double du[3], struct vgcm_point *p, struct vgcm_energy *e)
 {
     struct vgcm_point old = *p;
     double d_old = vgcm_law_damage(p);

@@ -229,6 +229,17 @@ static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *p
     c->np[i] = (int32_t)(to - (size_t)c->p0[i]);
 }
 
+/* All points count from the start, closed or not: what the masses and the step must bear. */
+static void set_wall_stiffness(struct brc_contacts *c, size_t i, const struct vgcm_law *law)
+{
+    const struct vgcm_contacts *f = vgcm_columns(c);
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    double k = f->kn[i] * fmax(1, law->eta), moment = 0;
+    for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++)
+        moment += p->area[j] * (p->s[j] * p->s[j] + p->t[j] * p->t[j] + p->h[j] * p->h[j]);
+    brc_set(c->k[i], k * f->moment[i][VGCM_A], k * moment, 0);
+}
+
 static int wall_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
 {
     struct brc_contacts *c = &sim->platens;
@@ -247,6 +258,7 @@ static int wall_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
             BRC_TRY(add_points(sim, c, i, (size_t)facets->cell_facet[k], sim->bodies.x[cell]));
     fit_points(sim, i, platen, above);
     set_moments(c, i);
+    set_wall_stiffness(c, i, law);
     return 0;
 }
 
@@ -369,6 +381,8 @@ static int sphere_row(struct brc_sim *sim, const struct vgcm_law *law, struct br
         const struct brc_platen *platen = brc_sim_platen(sim, pair[1]);
         brc_scale(f->n[i], platen->n, -1);
         brc_copy(f->s[i], platen->across);
+        double k = f->kn[i] * fmax(1, law->eta) * p->area[c->p0[i]];
+        brc_set(c->k[i], k, k * touch * touch, 0);
     }
     set_moments(c, i);
     return 0;

@@ -13,13 +13,13 @@ struct wall {
     struct vgcm_law law; /* with the platen's friction */
     struct vgcm_bond bond;
     struct vgcm_energy energy;
-    double frame[3][3];       /* normal from grain to platen, two axes of the platen's plane */
-    double riding[3][3];      /* frame that rides on the grain */
-    double move[3];           /* m, of the platen against the grain's centre in this step */
-    double turn[3];           /* rad, of the grain in this step */
-    double viscosity;         /* viscous force over area and increment */
-    double drag[6], viscous;  /* viscous force on the platen and its moment about the grain; J */
-    double area, moment, gap; /* of springs that count; m */
+    double frame[3][3];      /* normal from grain to platen, two axes of the platen's plane */
+    double riding[3][3];     /* frame that rides on the grain */
+    double move[3];          /* m, of the platen against the grain's centre in this step */
+    double turn[3];          /* rad, of the grain in this step */
+    double viscosity;        /* viscous force over area and increment */
+    double drag[6], viscous; /* viscous force on the platen and its moment about the grain; J */
+    double gap;              /* m, smallest opening */
 };
 
 static void set_frames(struct wall *w, size_t i)
@@ -136,10 +136,6 @@ static void step_point(struct wall *w, size_t i, size_t j, int flags, const doub
         add_force(w, i, part, r);
         add_drag(w, part, r);
     }
-    if (un < w->bond.u0 || is_grip) {
-        w->area += area;
-        w->moment += area * brc_norm2(r);
-    }
     w->gap = un < w->gap ? un : w->gap;
 }
 
@@ -161,11 +157,7 @@ static void begin_row(struct wall *w, size_t i)
     const struct brc_sim *sim = w->sim;
     w->platen = brc_sim_platen(sim, c->b[i]);
     w->law.mu = w->platen->friction;
-    w->bond = (struct vgcm_bond){.law = &w->law,
-                                 .kn = w->f->kn[i],
-                                 .ks = w->law.eta * w->f->kn[i],
-                                 .u0 = w->law.sigma_t / w->f->kn[i]};
-    w->area = w->moment = 0;
+    w->bond = (struct vgcm_bond){.law = &w->law, .kn = w->f->kn[i], .ks = w->law.eta * w->f->kn[i]};
     w->gap = HUGE_VAL;
     w->viscosity = sim->dt > 0 ? w->law.viscous * sim->bodies.true_mass[c->a[i]] /
                                      (w->f->moment[i][VGCM_A] * sim->dt)
@@ -181,7 +173,7 @@ static void begin_row(struct wall *w, size_t i)
 static void step_row(struct wall *w, size_t i, int flags)
 {
     const struct brc_bodies *b = &w->sim->bodies;
-    double height[3], *k = w->c->k[i];
+    double height[3];
     begin_row(w, i);
     brc_sub(height, b->x[w->c->a[i]], b->x[w->c->b[i]]);
     double above = brc_dot(height, w->platen->n);
@@ -200,11 +192,6 @@ static void step_row(struct wall *w, size_t i, int flags)
     w->c->gap[i] = w->gap;
     if (flags & VGCM_VISCOUS)
         account_drag(w, i);
-    double kmax = w->bond.kn > w->bond.ks ? w->bond.kn : w->bond.ks;
-    if (k[0] != kmax * w->area) {
-        brc_set(k, kmax * w->area, kmax * w->moment, 0);
-        w->c->k_version++;
-    }
 }
 
 void vgcm_walls(struct brc_sim *sim, const struct vgcm_law *law, int flags)
