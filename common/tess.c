@@ -39,7 +39,7 @@ static int name_missing(struct brc_context *ctx, double (*seed)[3], const double
     for (size_t i = 0; i < n; i++) {
         int32_t j = hider[i];
         const double *x = seed[i];
-        if (j >= 0 && memcmp(x, seed[j], 3 * sizeof *x) == 0)
+        if (j >= 0 && x[0] == seed[j][0] && x[1] == seed[j][1] && x[2] == seed[j][2])
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                      "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
                      x[1], x[2]);

@@ -22,7 +22,7 @@ int brc_cgal_cells(struct brc_context *ctx, double (*seed)[3], const double *rad
 
 /* Delaunay mesh of a convex polygon with triangles of at most max_area. */
 int brc_cgal_triangulate(struct brc_context *ctx, double (*corner)[2], size_t n, double max_area,
-                  struct brc_cgal_mesh *out);
+                         struct brc_cgal_mesh *out);
 void brc_cgal_mesh_free(struct brc_cgal_mesh *m);
 
 #endif
