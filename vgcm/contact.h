@@ -166,7 +166,8 @@ VGCM_INLINE void vgcm_motion_at(double at[3], const double u[VGCM_N_MOTION], dou
     at[2] = u[VGCM_T] + u[VGCM_TWIST] * s;
 }
 
-/* Adds a point's normal force (tension positive) and shear force on b to the generalised force. */
+/* Adds a point's normal force (tension positive) and shear force on b, the parts of eq:vgcm:10, to
+ * the generalised force. */
 VGCM_INLINE void vgcm_force_add(double sum[VGCM_N_MOTION], double fn, double fs, double ft,
                                 const double at[2])
 {
@@ -221,7 +222,7 @@ VGCM_INLINE void vgcm_force_apply_two(struct brc_contacts *c, size_t i, size_t j
                      sum[VGCM_OPEN] * m->n[k];                       /* eq:vgcm:19 */
         vgcm_two ta = as * m->s[k] + at * m->t[k] - twist * m->n[k]; /* eq:vgcm:24 */
         vgcm_two tb = bs * m->s[k] + bt * m->t[k] + twist * m->n[k]; /* eq:vgcm:25 */
-        c->f[i][k] = f[0];
+        c->f[i][k] = f[0]; /* on b; a gets the opposite: eq:vgcm:22 eq:vgcm:23 */
         c->ta[i][k] = ta[0];
         c->tb[i][k] = tb[0];
         c->f[j][k] = f[1];

@@ -8,15 +8,24 @@ int vgcm_points_count(enum vgcm_points_rule rule, size_t n)
     return rule == VGCM_POINTS_ONE ? 1 : (int)n + 1;
 }
 
+/* Squared ratio of the principal second moments of a facet that counts as a sliver. */
+static const double SLIVER = 1e-10;
+
 /* Symmetric 2 x 2 matrices as {xx, xy, yy}. */
 static double determinant(const double m[3])
 {
     return m[0] * m[2] - m[1] * m[1];
 }
 
-/* The symmetric b with b from b = to: the geometric mean of from's inverse and to. */
+/* The symmetric b with b from b = to: the geometric mean of from's inverse and to. A sliver, too
+ * thin for its determinant to be known, keeps its shape and takes the polar moment. */
 static void map_between(double b[3], const double from[3], const double to[3])
 {
+    double trace = from[0] + from[2], scale_all = sqrt((to[0] + to[2]) / trace);
+    if (determinant(from) <= SLIVER * trace * trace || determinant(to) <= 0) {
+        brc_set(b, scale_all, 0, scale_all);
+        return;
+    }
     double root_from = sqrt(determinant(from)), root_to = sqrt(determinant(to));
     double sum[3] = {from[2] / root_from + to[0] / root_to, -from[1] / root_from + to[1] / root_to,
                      from[0] / root_from + to[2] / root_to};

@@ -9,6 +9,8 @@
 
 /* A boundary facet faces a platen when its normal is within 30 degrees of the platen's. */
 static const double FACING = 0.86602540378443864676;
+/* Facets below this part of the mean area are points and lines that rounding has left. */
+static const double LEAST_AREA = 1e-12;
 /* Smallest distance from a platen that its stiffness counts with, in radii of the grain's volume:
  * a Voronoi seed may lie on the platen itself. */
 static const double LEAST_DISTANCE = 0.1;
@@ -18,10 +20,24 @@ static double volume_radius(double volume)
     return cbrt(3 * volume / (4 * BRC_PI));
 }
 
-double vgcm_radius(const struct brc_facets *facets, size_t cell)
+/* Radius that the gap rule counts with: a plain Voronoi cell stands for a sphere of its volume. */
+static double size_of(const struct brc_facets *facets, size_t cell)
 {
     double r = facets->radius[cell];
     return r > 0 ? r : volume_radius(facets->volume[cell]);
+}
+
+double vgcm_radius(const struct brc_facets *facets, size_t cell)
+{
+    double least = HUGE_VAL, r[3];
+    if (facets->radius[cell] > 0)
+        return facets->radius[cell];
+    for (size_t k = facets->cell_first[cell]; k < facets->cell_first[cell + 1]; k++) {
+        size_t facet = (size_t)facets->cell_facet[k];
+        brc_sub(r, facets->centroid[facet], facets->seed[cell]);
+        least = fmin(least, fabs(brc_dot(r, facets->normal[facet])));
+    }
+    return least;
 }
 
 static double centre_distance(const struct brc_facets *facets, size_t facet)
@@ -39,14 +55,15 @@ static bool is_inner(const struct brc_facets *facets, size_t facet)
 static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets, size_t facet)
 {
-    if (!is_inner(facets, facet) || !facets->is_contact[facet])
+    if (!is_inner(facets, facet) || !facets->is_contact[facet] ||
+        facets->area[facet] <= LEAST_AREA * census->mean_area)
         return false;
     if (params->interaction == VGCM_INTERACTION_ALL)
         return true;
     if (params->interaction == VGCM_INTERACTION_AREA)
-        return facets->area[facet] >= census->smallest_area;
-    double ra = vgcm_radius(facets, (size_t)facets->cell[facet][0]);
-    double rb = vgcm_radius(facets, (size_t)facets->cell[facet][1]);
+        return facets->area[facet] >= params->interaction_area * census->mean_area;
+    double ra = size_of(facets, (size_t)facets->cell[facet][0]);
+    double rb = size_of(facets, (size_t)facets->cell[facet][1]);
     return centre_distance(facets, facet) < ra + rb + census->gap;
 }
 
@@ -56,7 +73,7 @@ void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *para
     double diameters = 0, area = 0, sum = 0;
     *census = (struct vgcm_census){0};
     for (size_t i = 0; i < facets->n_cells; i++)
-        diameters += 2 * vgcm_radius(facets, i);
+        diameters += 2 * size_of(facets, i);
     for (size_t i = 0; i < facets->n_facets; i++) {
         if (!is_inner(facets, i))
             continue;
@@ -67,7 +84,7 @@ void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *para
                       ? params->interaction_gap
                       : params->interaction_gap_ratio * diameters / (double)facets->n_cells;
     if (census->n_inner > 0)
-        census->smallest_area = params->interaction_area * area / (double)census->n_inner;
+        census->mean_area = area / (double)census->n_inner;
     for (size_t i = 0; i < facets->n_facets; i++) {
         if (!is_bonded(census, params, facets, i))
             continue;

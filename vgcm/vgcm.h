@@ -11,36 +11,36 @@ enum vgcm_softening { VGCM_SOFTENING_NONE, VGCM_SOFTENING_LINEAR, VGCM_SOFTENING
 enum vgcm_energies { VGCM_ENERGIES_TOTAL, VGCM_ENERGIES_POST_PEAK };
 enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERACTION_AREA };
 
-#define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                  \
-    REAL(density, "kg/m3", "2650 kg/m3", "(0, inf)", "density of the grains")                    \
-    REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "modulus of the equivalent continuum, eq 28")      \
-    REAL(eta, "1", "0.125", "[0, 10]", "shear stiffness over normal stiffness, eq 29")           \
-    REAL(mu, "1", "0.05", "[0, 10]", "friction coefficient of grains, eq 33")                    \
-    REAL(sigma_t, "Pa", "11.4 MPa", "(0, inf)", "tensile strength of a point, eq 32")            \
-    REAL(tau, "Pa", "88.5 MPa", "(0, inf)", "cohesion of a point, eq 33")                        \
-    CHOICE(softening, "none|linear|bilinear", "bilinear",                                        \
-           "after the peak; none: brittle, the fracture energies are not used")                  \
-    REAL(softening_beta, "1", "0.25", "(0, 1)",                                                  \
-         "bilinear: strength at the kink over the peak strength")                                \
-    REAL(softening_w1, "1", "0.75", "(0, 2)",                                                    \
-         "bilinear: displacement past the peak at the kink, in (post-peak energy)/strength; it " \
-         "ends at (2 - w1)/beta")                                                                \
-    REAL(g_fn, "J/m2", "64.6 J/m2", "(0, inf)", "fracture energy in tension")                    \
-    REAL(g_fs, "J/m2", "31114.4 J/m2", "(0, inf)", "fracture energy in shear")                   \
-    CHOICE(energies, "total|post_peak", "total",                                                 \
-           "g_fn and g_fs count from zero displacement, or from the peak on")                    \
-    CHOICE(                                                                                      \
-        points, "paper|exact|one", "paper",                                                      \
-        "paper: vertices and centroid; exact: the same drawn in to the facet's second moments; " \
-        "one: the centroid")                                                                     \
-    CHOICE(interaction, "gap|all|area", "gap",                                                   \
-           "which facets are contacts: spheres nearer than the gap, all, or large facets")       \
-    REAL(interaction_gap, "m", "0 m", "[0, inf)",                                                \
-         "gap: largest gap of two spheres that are bonded; 0: interaction_gap_ratio holds")      \
-    REAL(interaction_gap_ratio, "1", "0.2", "(0, 10]", "gap: the same in mean sphere diameters") \
-    REAL(interaction_area, "1", "0.5", "[0, 10]",                                                \
-         "area: smallest facet that is bonded, in mean areas of the inner facets")               \
-    REAL(viscous, "1/s", "0 1/s", "[0, inf)",                                                    \
+#define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
+    REAL(density, "kg/m3", "2650 kg/m3", "(0, inf)", "density of the grains")                     \
+    REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "modulus of the equivalent continuum, eq 28")       \
+    REAL(eta, "1", "0.125", "[0, 10]", "shear stiffness over normal stiffness, eq 29")            \
+    REAL(mu, "1", "0.05", "[0, 10]", "friction coefficient of grains, eq 33")                     \
+    REAL(sigma_t, "Pa", "11.4 MPa", "(0, inf)", "tensile strength of a point, eq 32")             \
+    REAL(tau, "Pa", "88.5 MPa", "(0, inf)", "cohesion of a point, eq 33")                         \
+    CHOICE(softening, "none|linear|bilinear", "bilinear",                                         \
+           "after the peak; none: brittle, the fracture energies are not used")                   \
+    REAL(softening_beta, "1", "0.25", "(0, 1)",                                                   \
+         "bilinear: strength at the kink over the peak strength")                                 \
+    REAL(softening_w1, "1", "0.75", "(0, 2)",                                                     \
+         "bilinear: displacement past the peak at the kink, in (post-peak energy)/strength; it "  \
+         "ends at (2 - w1)/beta")                                                                 \
+    REAL(g_fn, "J/m2", "64.6 J/m2", "(0, inf)", "fracture energy in tension")                     \
+    REAL(g_fs, "J/m2", "31114.4 J/m2", "(0, inf)", "fracture energy in shear")                    \
+    CHOICE(energies, "total|post_peak", "total",                                                  \
+           "g_fn and g_fs count from zero displacement, or from the peak on")                     \
+    CHOICE(                                                                                       \
+        points, "paper|exact|one", "paper",                                                       \
+        "paper: vertices and centroid; exact: the same drawn in to the facet's second moments; "  \
+        "one: the centroid")                                                                      \
+    CHOICE(interaction, "gap|all|area", "gap",                                                    \
+           "which facets are contacts: spheres nearer than the gap, all, or large facets")        \
+    REAL(interaction_gap, "m", "0 m", "[0, inf)",                                                 \
+         "gap: largest gap of two spheres that are bonded; 0: interaction_gap_ratio holds")       \
+    REAL(interaction_gap_ratio, "1", "0.17", "(0, 10]", "gap: the same in mean sphere diameters") \
+    REAL(interaction_area, "1", "0.67", "[0, 10]",                                                \
+         "area: smallest facet that is bonded, in mean areas of the inner facets")                \
+    REAL(viscous, "1/s", "0 1/s", "[0, inf)",                                                     \
          "dynamic regime: viscous force = this times effective mass times relative velocity")
 
 struct vgcm_params {
@@ -121,11 +121,11 @@ void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *params);
 struct vgcm_census {
     size_t n_inner, n_contacts;             /* inner facets, those that are contacts */
     double mean_distance, largest_distance; /* m, of the contacts */
-    double gap, smallest_area;              /* limits in use: m, m2 */
+    double gap, mean_area;                  /* limit of the gap rule, m; of inner facets, m2 */
 };
 void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets);
-/* Radius of a cell's sphere; that of equal volume for a plain Voronoi cell. */
+/* Radius of a cell's sphere; for a plain Voronoi cell the largest about the seed that fits in. */
 double vgcm_radius(const struct brc_facets *facets, size_t cell);
 int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);
 int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,

@@ -136,6 +136,20 @@ static void exact_points_have_the_facets_second_moments(void **state)
     CHECK_BETWEEN(second[0][0] / own[0][0], 1.3, 3);
 }
 
+static void slivers_keep_their_area_and_polar_moment(void **state)
+{
+    static const double flat[][2] = {{0, 0}, {1, 0}, {1, 1e-6}, {0.3, 1e-6}};
+    struct facet f;
+    double own[3][3], area, first[3], second[3][3];
+    (void)state;
+    make_facet(&f, flat, 4);
+    own_moments(&f, own);
+    moments(&f, VGCM_POINTS_EXACT, &area, first, second);
+    CHECK_NEAR(area, f.area, 0, 1e-9);
+    CHECK_NEAR((second[0][0] + second[1][1] + second[2][2]) / (own[0][0] + own[1][1] + own[2][2]),
+               1, 1e-9, 0);
+}
+
 static void points_do_not_depend_on_the_unit(void **state)
 {
     static const double flat[][2] = {{0, 0}, {3, -0.5}, {4, 0.2}, {3.5, 1}, {0.4, 0.9}};
@@ -160,6 +174,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paper_points_overstate_the_second_moment),
         cmocka_unit_test(exact_points_have_the_facets_second_moments),
+        cmocka_unit_test(slivers_keep_their_area_and_polar_moment),
         cmocka_unit_test(points_do_not_depend_on_the_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
