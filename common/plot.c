@@ -4,6 +4,7 @@
 #include "vec.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -471,6 +472,9 @@ static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *scr
     if (child < 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot start gnuplot: %s", strerror(errno));
     if (child == 0) {
+        sigset_t none; /* the run may hold back signals */
+        sigemptyset(&none);
+        sigprocmask(SIG_SETMASK, &none, NULL);
         if (chdir(dir) == 0 && freopen("gnuplot.log", "a", stderr))
             execlp("gnuplot", "gnuplot", script, (char *)NULL);
         _exit(127);

@@ -48,25 +48,36 @@ struct run {
 
 /* ---- signals ------------------------------------------------------------------------------- */
 
-static volatile sig_atomic_t stop_signal;
-
-static void note_signal(int number)
+/* Signals that end a run. They are blocked and looked for between steps, so that no handler and no
+ * global state is needed. What the parent has told us to ignore (nohup) stays ignored. */
+static void stop_signals(sigset_t *set)
 {
-    stop_signal = number;
+    static const int number[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+    sigemptyset(set);
+    for (size_t i = 0; i < sizeof number / sizeof number[0]; i++) {
+        struct sigaction now;
+        if (sigaction(number[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN)
+            sigaddset(set, number[i]);
+    }
 }
 
-void brc_run_catch_signals(void)
+void brc_run_hold_signals(void)
 {
-    static const int caught[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
-    struct sigaction action = {.sa_handler = note_signal};
-    sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof caught / sizeof caught[0]; i++)
-        sigaction(caught[i], &action, NULL);
+    sigset_t set;
+    stop_signals(&set);
+    sigprocmask(SIG_BLOCK, &set, NULL);
 }
 
 bool brc_run_is_stopped(void)
 {
-    return stop_signal != 0;
+    sigset_t set, pending;
+    stop_signals(&set);
+    sigemptyset(&pending);
+    sigpending(&pending);
+    for (int number = 1; number < 32; number++)
+        if (sigismember(&set, number) == 1 && sigismember(&pending, number) == 1)
+            return true;
+    return false;
 }
 
 /* ---- folder -------------------------------------------------------------------------------- */
@@ -403,7 +414,7 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
             code = write_results(&r, out);
         report(&r, true);
     }
-    if (code == 0 && brc_run_is_stopped())
+    if (code == 0 && strcmp(r.ended_by, "signal") == 0)
         code = brc_error_set(ctx, BRC_ERR_INTERRUPTED, __FILE__, __LINE__,
                              "interrupted at step %" PRId64 "; the state is saved in %s",
                              r.sim.step, order->dir);

@@ -18,14 +18,15 @@ struct brc_run_order {
 };
 
 /* Runs to the end of the test. Writes to dir: case.yaml, log, state.h5, curve.csv, events.csv,
- * broken.csv, summary.json, and the plots. A signal that was caught saves the state and ends in
- * BRC_ERR_INTERRUPTED; curves are written after any failure of a started run. */
+ * broken.csv, summary.json, and the plots. A signal that was held (brc_run_hold_signals) saves the
+ * state and ends in BRC_ERR_INTERRUPTED; curves are written after any failure of a started run. */
 int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out);
 
 /* Fails when dir holds results and neither is_resumed nor is_forced allows it. */
 int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced);
-/* SIGINT, SIGTERM, SIGHUP and a lost reader end all runs of the process after the present step. */
-void brc_run_catch_signals(void);
+/* From now on SIGINT, SIGTERM, SIGHUP and a lost reader wait: each run of the process saves its
+ * state and ends after the present step. */
+void brc_run_hold_signals(void);
 bool brc_run_is_stopped(void);
 /* Makes a folder and those above it. */
 int brc_run_make_folder(struct brc_context *ctx, const char *path);
