@@ -118,15 +118,41 @@ static struct view choose_view(const struct brc_output_params *output, enum brc_
     return v;
 }
 
-/* The mode of each facet that counts as broken, -1 for the others; area by mode is summed. */
+/* The mode of each facet that is drawn as broken, -1 for the others; area by mode is summed. */
 struct cracks {
     int8_t *mode; /* [n_facets] */
     size_t n[BRC_N_MODES];
     double area[BRC_N_MODES]; /* m2 */
 };
 
-static int classify(struct brc_context *ctx, const struct brc_sim *sim, double facet_part,
-                    struct cracks *c)
+/* Where the point of a body that was at p at the start is now, less p. */
+static void displacement(const struct brc_bodies *b, size_t body, const double p[3], double u[3])
+{
+    double arm[3], local[3], m[3][3], m0[3][3];
+    brc_quat_matrix(m, b->q[body]);
+    brc_quat_matrix(m0, b->q0[body]);
+    brc_sub(arm, p, b->x0[body]);
+    brc_mat_mul_t(local, m0, arm);
+    brc_mat_mul(arm, m, local);
+    brc_add(u, b->x[body], arm);
+    brc_sub(u, u, p);
+}
+
+/* How far the two sides of an inner facet have moved against each other at its centroid. */
+static double facet_opening(const struct brc_sim *sim, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double low[3], high[3];
+    if (f->cell[facet][1] < 0)
+        return 0;
+    displacement(&sim->bodies, (size_t)f->cell[facet][0], f->centroid[facet], low);
+    displacement(&sim->bodies, (size_t)f->cell[facet][1], f->centroid[facet], high);
+    brc_sub(high, high, low);
+    return brc_norm(high);
+}
+
+static int classify(struct brc_context *ctx, const struct brc_sim *sim,
+                    const struct brc_output_params *output, struct cracks *c)
 {
     const struct brc_facets *f = &sim->specimen->facets;
     const struct brc_events *e = &sim->events;
@@ -147,9 +173,10 @@ static int classify(struct brc_context *ctx, const struct brc_sim *sim, double f
             sum += area[i][m];
             most = area[i][m] > area[i][most] ? m : most;
         }
-        bool is_broken = sum > 0 && sum >= facet_part * f->area[i] * (1 - 1e-9);
-        c->mode[i] = (int8_t)(is_broken ? most : -1);
-        if (is_broken) {
+        bool is_broken = sum > 0 && sum >= output->facet_part * f->area[i] * (1 - 1e-9);
+        bool is_drawn = is_broken && facet_opening(sim, i) >= output->opening;
+        c->mode[i] = (int8_t)(is_drawn ? most : -1);
+        if (is_drawn) {
             c->n[most]++;
             c->area[most] += f->area[i];
         }
@@ -326,7 +353,7 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
     bool used[BRC_N_MODES][N_SHADES];
     struct cracks c;
     FILE *out;
-    BRC_TRY(classify(ctx, sim, output->facet_part, &c));
+    BRC_TRY(classify(ctx, sim, output, &c));
     int code = open_script(ctx, dir, "cracks.plot", &out);
     if (code == 0) {
         fprintf(out,
