@@ -19,7 +19,7 @@ endif
 MODELS       := $(filter-out common calib tests cases docs results,$(patsubst %/model.c,%,$(sort $(wildcard */model.c))))
 LIB_SOURCES  := $(sort $(filter-out common/main.c,$(wildcard common/*.c common/*.cpp calib/*.c $(addsuffix /*.c,$(MODELS)))))
 # the slow ones first, so that the cores stay busy to the end
-TEST_FOLDERS := $(addprefix tests/,golden determinism converge model unit)
+TEST_FOLDERS := $(addprefix tests/,golden determinism converge model cli unit)
 TEST_SOURCES := $(foreach d,$(TEST_FOLDERS),$(sort $(wildcard $d/test_*.c)))
 TEST_SCRIPTS := $(foreach d,$(TEST_FOLDERS),$(sort $(wildcard $d/test_*.sh)))
 # whatever tests share, the null model included; linked in as far as a test asks for it
@@ -126,7 +126,8 @@ check-mutants: all $(TEST_PROGRAMS) ## plant faults in the laws; the tests must 
 	@if [ -x tests/mutants/run ]; then $(RUN_ENV) tests/mutants/run; else echo "no tests/mutants/run"; fi
 
 demo: all ## both models side by side: compression, tension, Brazilian test
-	@for case in $(sort $(wildcard cases/demo_*.yaml)); do $(BUILD)/breccia compare $$case || exit 1; done
+	@for case in $(sort $(wildcard cases/demo_*.yaml)); do $(BUILD)/breccia compare $$case --force && echo || exit 1; done
+	@echo "pictures:"; for picture in results/demo_*/*.png; do echo "  $$picture"; done
 bench: all $(BENCH_PROGRAMS) ## times of the hot loops
 	@for program in $(BENCH_PROGRAMS); do $$program || exit 1; done
 

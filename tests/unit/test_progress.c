@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/progress.h"
+#include "tests/near.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static void test_duration(void **state)
+{
+    (void)state;
+    char text[32];
+    assert_string_equal(brc_progress_duration(0.4, text, sizeof text), "0:00");
+    assert_string_equal(brc_progress_duration(65, text, sizeof text), "1:05");
+    assert_string_equal(brc_progress_duration(3599.6, text, sizeof text), "1:00:00");
+    assert_string_equal(brc_progress_duration(7384, text, sizeof text), "2:03:04");
+}
+
+static size_t drawn(bool quiet, char *text, size_t size)
+{
+    static const char *const labels[] = {"one", "two"};
+    const struct brc_progress_report report = {.fraction = 1,
+                                               .strain = 0.0123,
+                                               .stress = 4.5e6,
+                                               .step = 678,
+                                               .broken = 9,
+                                               .is_done = true};
+    struct brc_progress p;
+    FILE *out = tmpfile();
+    assert_non_null(out);
+    brc_progress_begin(&p, out, labels, 2, quiet);
+    brc_progress_update(&p, 1, &report);
+    brc_progress_end(&p);
+    rewind(out);
+    size_t n = fread(text, 1, size - 1, out);
+    text[n] = '\0';
+    fclose(out);
+    return n;
+}
+
+static void test_plain_lines(void **state)
+{
+    (void)state;
+    char text[2000];
+    assert_true(drawn(false, text, sizeof text) > 0);
+    assert_null(strchr(text, '\033'));
+    const char *two = strstr(text, "two ");
+    assert_non_null(two);
+    assert_non_null(strstr(two, "678"));
+    assert_non_null(strstr(two, "strain 1.2300 %"));
+    assert_non_null(strstr(two, "4.500 MPa"));
+    assert_non_null(strstr(two, "done"));
+}
+
+static void test_quiet(void **state)
+{
+    (void)state;
+    char text[2000];
+    assert_int_equal(drawn(true, text, sizeof text), 0);
+}
+
+static void test_pipe(void **state)
+{
+    (void)state;
+    struct brc_progress p;
+    struct brc_progress_report sent = {.step = 12, .strain = 0.5}, got = {0};
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    brc_progress_begin_pipe(&p, ends[1]);
+    brc_progress_update(&p, 0, &sent);
+    assert_int_equal(read(ends[0], &got, sizeof got), (long)sizeof got);
+    assert_memory_equal(&got, &sent, sizeof got);
+    close(ends[0]);
+    close(ends[1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_duration),
+        cmocka_unit_test(test_plain_lines),
+        cmocka_unit_test(test_quiet),
+        cmocka_unit_test(test_pipe),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
