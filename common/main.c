@@ -1,0 +1,436 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The command line. */
+#include "comm.h"
+#include "compare.h"
+#include "run.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256 };
+
+struct options {
+    const char *operand; /* CASE, or the section of `params` */
+    const char *model, *dir;
+    const char *overrides[MAX_OVERRIDES];
+    int n_overrides;
+    bool is_resumed, is_forced, is_quiet, is_help;
+};
+
+/* Options by command: R run, C compare. */
+static const struct option {
+    const char *name, *value, *commands, *help;
+} options[] = {
+    {"--model", "NAME", "R", "contact model; default: `model` of the case"},
+    {"-o", "DIR", "RC", "folder of results; default: results/<case>/<model>, results/<case>"},
+    {"--set", "KEY=VALUE", "RC",
+     "replace a value of the case, as vgcm.e_bar=\"50 GPa\"; repeatable"},
+    {"--resume", NULL, "RC", "go on from the saved state, to the same bits"},
+    {"--force", NULL, "RC", "replace results that are there"},
+    {"--quiet", NULL, "RC", "no progress, no log lines"},
+    {"--help", NULL, "RCPM", "this text"},
+};
+enum { N_OPTIONS = sizeof options / sizeof options[0] };
+
+struct command {
+    const char *name;
+    char letter; /* in option.commands */
+    const char *operand, *does, *example, *more;
+    int (*act)(struct brc_context *ctx, const struct options *o);
+};
+
+static int act_run(struct brc_context *ctx, const struct options *o);
+static int act_compare(struct brc_context *ctx, const struct options *o);
+static int act_params(struct brc_context *ctx, const struct options *o);
+static int act_models(struct brc_context *ctx, const struct options *o);
+
+static const struct command commands[] = {
+    {"run", 'R', "CASE", "run one model through the test of a case file",
+     "breccia run cases/demo_tension.yaml --model vgcm -o results/first --set specimen.seed=2",
+     "Writes summary.json, curve.csv, events.csv, state.h5, case.yaml, log and pictures.\n"
+     "Ctrl-C saves the state and ends with status 7; the same command with --resume goes on.\n",
+     act_run},
+    {"compare", 'C', "CASE", "run all models of a case side by side and print a table",
+     "breccia compare cases/demo_tension.yaml -o results/pair",
+     "Each model's results go to DIR/<model>; the table to DIR/compare.txt, the pictures to DIR.\n",
+     act_compare},
+    {"params", 'P', "[SECTION]",
+     "list the keys of a section of the case file: a model, specimen, test, run, output",
+     "breccia params vgcm", "Without a section: all of them.\n", act_params},
+    {"models", 'M', "", "list the contact models", "breccia models", "", act_models},
+};
+enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
+
+/* ---- help ---------------------------------------------------------------------------------- */
+
+static void print_statuses(FILE *out)
+{
+    int last = -1;
+    fputs("exit status:\n", out);
+#define STATUS_LINE(name, code, status, text)                               \
+    if ((status) != last)                                                   \
+        fprintf(out, "%s  %d  %s", last < 0 ? "" : "\n", (status), (text)); \
+    else                                                                    \
+        fprintf(out, "; %s", (text));                                       \
+    last = (status);
+    BRC_ERRORS(STATUS_LINE)
+#undef STATUS_LINE
+    fputc('\n', out);
+}
+
+static void print_help(FILE *out)
+{
+    fputs("breccia " BRC_VERSION ": fracture of bonded-grain rock, contact models side by side\n\n"
+          "usage: breccia COMMAND [OPTION]...\n\ncommands:\n",
+          out);
+    for (int i = 0; i < N_COMMANDS; i++)
+        fprintf(out, "  %-8s %-10s %s\n", commands[i].name, commands[i].operand, commands[i].does);
+    fputs("\n  breccia COMMAND --help    options and an example\n"
+          "  breccia --version\n\n"
+          "example: breccia compare cases/demo_compression.yaml\n\n",
+          out);
+    print_statuses(out);
+}
+
+static void print_command_help(FILE *out, const struct command *c)
+{
+    fprintf(out, "usage: breccia %s%s%s%s\n\n%s\n%s", c->name, *c->operand ? " " : "", c->operand,
+            c->letter == 'R' || c->letter == 'C' ? " [OPTION]..." : "", c->does, c->more);
+    fputs("\noptions:\n", out);
+    for (int i = 0; i < N_OPTIONS; i++) {
+        char left[40];
+        if (!strchr(options[i].commands, c->letter))
+            continue;
+        snprintf(left, sizeof left, "%s%s%s", options[i].name, options[i].value ? " " : "",
+                 options[i].value ? options[i].value : "");
+        fprintf(out, "  %-16s %s\n", left, options[i].help);
+    }
+    fprintf(out, "\nexample:\n  %s\n\n", c->example);
+    print_statuses(out);
+}
+
+/* ---- reading the command line -------------------------------------------------------------- */
+
+/* " ; did you mean 'X'?" for the nearest of the names, or "". */
+static const char *suggest(const char *text, const char *const *names, int n, char buffer[128])
+{
+    const char *nearest = NULL;
+    int least = INT_MAX;
+    for (int i = 0; i < n; i++) {
+        int distance = brc_params_distance(text, names[i]);
+        if (distance < least) {
+            least = distance;
+            nearest = names[i];
+        }
+    }
+    buffer[0] = '\0';
+    bool is_near = least <= 2 || brc_params_is_near(text, least);
+    if (nearest && is_near && strlen(text) > 1)
+        snprintf(buffer, 128, "; did you mean '%.60s'?", nearest);
+    return buffer;
+}
+
+static const struct option *find_option(const struct command *c, const char *name, size_t length)
+{
+    for (int i = 0; i < N_OPTIONS; i++)
+        if (strchr(options[i].commands, c->letter) && strlen(options[i].name) == length &&
+            strncmp(options[i].name, name, length) == 0)
+            return &options[i];
+    return NULL;
+}
+
+static int fail_option(struct brc_context *ctx, const struct command *c, const char *text)
+{
+    const char *names[N_OPTIONS];
+    char name[64], hint[128] = "";
+    int n = 0;
+    for (int i = 0; i < N_OPTIONS; i++)
+        if (strchr(options[i].commands, c->letter))
+            names[n++] = options[i].name;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
+    BRC_FAIL(ctx, BRC_ERR_USAGE, "%s has no option '%s'%s%s", c->name, name,
+             suggest(name, names, n, hint), *hint ? "" : "; see breccia COMMAND --help");
+}
+
+static int take_option(struct brc_context *ctx, struct options *o, const char *name,
+                       const char *value)
+{
+    if (strcmp(name, "--model") == 0) {
+        o->model = value;
+    } else if (strcmp(name, "-o") == 0) {
+        o->dir = value;
+    } else if (strcmp(name, "--set") == 0) {
+        if (o->n_overrides == MAX_OVERRIDES)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "more than %d --set; write a case file", MAX_OVERRIDES);
+        o->overrides[o->n_overrides++] = value;
+    } else if (strcmp(name, "--resume") == 0) {
+        o->is_resumed = true;
+    } else if (strcmp(name, "--force") == 0) {
+        o->is_forced = true;
+    } else if (strcmp(name, "--quiet") == 0) {
+        o->is_quiet = true;
+    } else {
+        o->is_help = true;
+    }
+    return 0;
+}
+
+/* One word of the command line, with the next one where it needs a value. */
+static int read_word(struct brc_context *ctx, const struct command *c, char **words, int *i,
+                     struct options *o)
+{
+    const char *word = words[*i];
+    if (word[0] != '-') {
+        if (o->operand || !*c->operand)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes %s, '%.80s' is too much", c->name,
+                     *c->operand ? c->operand : "no operand", word);
+        o->operand = word;
+        return 0;
+    }
+    size_t length = strcspn(word, "=");
+    const struct option *option = find_option(c, word, length);
+    if (!option)
+        return fail_option(ctx, c, word);
+    const char *value = word[length] == '=' ? word + length + 1 : NULL;
+    if (value && !option->value)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes no value", option->name);
+    if (!value && option->value)
+        value = words[*i + 1] ? words[++*i] : NULL;
+    if (option->value && !(value && *value))
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a value: %s %s", option->name, option->name,
+                 option->value);
+    return take_option(ctx, o, option->name, value);
+}
+
+static int read_words(struct brc_context *ctx, const struct command *c, char **words,
+                      struct options *o)
+{
+    for (int i = 0; words[i]; i++)
+        BRC_TRY(read_word(ctx, c, words, &i, o));
+    bool needs_case = c->letter == 'R' || c->letter == 'C';
+    if (o->is_help)
+        return 0;
+    if (needs_case && !o->operand)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a case file: %s", c->name, c->example);
+    if (o->is_resumed && o->is_forced)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "--resume and --force exclude each other");
+    return 0;
+}
+
+/* ---- commands ------------------------------------------------------------------------------ */
+
+/* Appends a word, quoted for the shell where it must be. */
+static void add_word(char *text, size_t size, const char *word)
+{
+    size_t used = strlen(text);
+    bool is_plain =
+        word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                          "_-+=./,:%@")] == '\0';
+    snprintf(text + used, size - used, is_plain ? " %s" : " '%s'", word);
+}
+
+/* The command that goes on with an interrupted one. */
+static void tell_resume(struct brc_context *ctx, const char *command, const struct options *o)
+{
+    char text[800];
+    snprintf(text, sizeof text, "breccia %s", command);
+    add_word(text, sizeof text, o->operand);
+    if (o->model) {
+        add_word(text, sizeof text, "--model");
+        add_word(text, sizeof text, o->model);
+    }
+    if (o->dir) {
+        add_word(text, sizeof text, "-o");
+        add_word(text, sizeof text, o->dir);
+    }
+    for (int i = 0; i < o->n_overrides; i++) {
+        add_word(text, sizeof text, "--set");
+        add_word(text, sizeof text, o->overrides[i]);
+    }
+    add_word(text, sizeof text, "--resume");
+    size_t used = strlen(ctx->message);
+    snprintf(ctx->message + used, sizeof ctx->message - used, "; go on with: %s", text);
+}
+
+static int make_specimen(struct brc_context *ctx, const struct brc_job *job,
+                         struct brc_specimen *specimen)
+{
+    BRC_TRY(brc_specimen_create(ctx, &job->specimen, specimen));
+    brc_log(ctx, "%s: %zu grains, %zu facets", job->name, specimen->facets.n_cells,
+            specimen->facets.n_facets);
+    return 0;
+}
+
+/* After the signals are held: threads that MPI starts must hold them, too. */
+static int start_single(struct brc_context *ctx)
+{
+    BRC_TRY(brc_comm_start(ctx));
+    if (brc_comm_size() > 1)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "this version runs in one process; start it without mpirun");
+    return 0;
+}
+
+static void print_summary(const struct brc_summary *s, const char *dir)
+{
+    brc_compare_table(stdout, &s, 1);
+    printf("results in %s\n", dir);
+}
+
+static int run_job(struct brc_context *ctx, const struct options *o, const struct brc_job *job)
+{
+    char dir[PATH_SIZE];
+    struct brc_specimen specimen = {0};
+    struct brc_progress progress;
+    struct brc_summary summary;
+    struct brc_run_order order = {.job = job,
+                                  .specimen = &specimen,
+                                  .dir = dir,
+                                  .is_resumed = o->is_resumed,
+                                  .is_forced = o->is_forced,
+                                  .progress = &progress};
+    const char *name = o->model ? o->model : job->file.head.model;
+    if (!*name)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
+                 o->operand);
+    BRC_TRY(brc_job_model(ctx, name, &order.model));
+    if (o->dir)
+        snprintf(dir, sizeof dir, "%s", o->dir);
+    else
+        snprintf(dir, sizeof dir, "results/%s/%s", job->name, name);
+    BRC_TRY(brc_run_check_folder(ctx, dir, o->is_resumed, o->is_forced));
+    int code = make_specimen(ctx, job, &specimen);
+    if (code == 0) {
+        brc_run_hold_signals();
+        code = start_single(ctx);
+    }
+    if (code == 0) {
+        brc_progress_begin(&progress, stderr, &name, 1, o->is_quiet);
+        code = brc_run(ctx, &order, &summary);
+        brc_progress_end(&progress);
+    }
+    if (code == 0)
+        print_summary(&summary, dir);
+    brc_specimen_free(&specimen);
+    return code;
+}
+
+static int act_run(struct brc_context *ctx, const struct options *o)
+{
+    struct brc_job job;
+    int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
+    if (code == 0)
+        code = run_job(ctx, o, &job);
+    brc_job_free(&job);
+    brc_comm_end();
+    if (code == BRC_ERR_INTERRUPTED)
+        tell_resume(ctx, "run", o);
+    return code;
+}
+
+static int compare_job(struct brc_context *ctx, const struct options *o, const struct brc_job *job)
+{
+    char dir[PATH_SIZE];
+    struct brc_specimen specimen = {0};
+    const struct brc_compare_order order = {.job = job,
+                                            .specimen = &specimen,
+                                            .dir = dir,
+                                            .is_resumed = o->is_resumed,
+                                            .is_forced = o->is_forced,
+                                            .is_quiet = o->is_quiet};
+    if (o->dir)
+        snprintf(dir, sizeof dir, "%s", o->dir);
+    else
+        snprintf(dir, sizeof dir, "results/%s", job->name);
+    int code = make_specimen(ctx, job, &specimen);
+    if (code == 0) {
+        brc_run_hold_signals();
+        code = brc_compare(ctx, &order);
+    }
+    if (code == 0)
+        printf("results in %s\n", dir);
+    brc_specimen_free(&specimen);
+    return code;
+}
+
+static int act_compare(struct brc_context *ctx, const struct options *o)
+{
+    struct brc_job job;
+    int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
+    if (code == 0)
+        code = compare_job(ctx, o, &job);
+    brc_job_free(&job);
+    if (code == BRC_ERR_INTERRUPTED)
+        tell_resume(ctx, "compare", o);
+    return code;
+}
+
+static int act_params(struct brc_context *ctx, const struct options *o)
+{
+    const char *names[64];
+    struct brc_param_list list;
+    char hint[128] = "";
+    bool is_found = false;
+    int n = 0;
+    for (; n < 64 && brc_job_section(n, &names[n], &list); n++) {
+        if (o->operand && strcmp(o->operand, names[n]) != 0)
+            continue;
+        if (is_found)
+            putchar('\n');
+        brc_params_print(stdout, names[n], list);
+        is_found = true;
+    }
+    if (!is_found)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "no section '%.60s'%s; breccia params lists all", o->operand,
+                 suggest(o->operand, names, n, hint));
+    return 0;
+}
+
+static int act_models(struct brc_context *ctx, const struct options *o)
+{
+    (void)ctx, (void)o;
+    for (int i = 0; i < brc_registry_count(); i++)
+        printf("%-12s %s\n", brc_registry_at(i)->name, brc_registry_at(i)->citation);
+    return 0;
+}
+
+static int act(struct brc_context *ctx, char **words)
+{
+    const char *names[N_COMMANDS + 2] = {"--help", "--version"};
+    struct options o = {0};
+    char hint[128] = "";
+    for (int i = 0; i < N_COMMANDS; i++) {
+        names[i + 2] = commands[i].name;
+        if (strcmp(words[0], commands[i].name) != 0)
+            continue;
+        BRC_TRY(read_words(ctx, &commands[i], words + 1, &o));
+        ctx->quiet = o.is_quiet;
+        if (o.is_help)
+            print_command_help(stdout, &commands[i]);
+        return o.is_help ? 0 : commands[i].act(ctx, &o);
+    }
+    BRC_FAIL(ctx, BRC_ERR_USAGE, "no command '%.60s'%s%s", words[0],
+             suggest(words[0], names, N_COMMANDS + 2, hint), *hint ? "" : "; see breccia --help");
+}
+
+int main(int argc, char **argv)
+{
+    struct brc_context ctx = BRC_CONTEXT_INIT;
+    if (argc < 2) {
+        print_help(stderr);
+        return brc_error_exit_status(BRC_ERR_USAGE);
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        print_help(stdout);
+        return 0;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("breccia " BRC_VERSION);
+        return 0;
+    }
+    int code = act(&ctx, argv + 1);
+    if (code != 0)
+        fprintf(stderr, "breccia: %s\n", ctx.message);
+    return brc_error_exit_status(code);
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/io_h5.h"
+#include "tests/fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static const struct brc_h5_text texts[] = {{"case", "breccia: 1\n# \xc3\xa4\n"}, {"empty", ""}};
+static const struct brc_h5_extra extra = {texts, 2, NULL};
+
+static void make_path(char path[64])
+{
+    snprintf(path, 64, "/tmp/breccia-test-%ld-state.h5", (long)getpid());
+}
+
+#define POINT_FIELDS(SCALAR, VECTOR)             \
+    SCALAR(double, u, BRC_STATE, "m", "opening") \
+    SCALAR(double, w, BRC_SCRATCH, "m", "not saved")
+struct points {
+    POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+#define BRC_OWNER struct points
+static const struct brc_field point_fields[] = {POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+/* The null model, with points that hold something. */
+static void start_sim(struct fixture *f)
+{
+    struct brc_model model = brc_model_null;
+    model.point_fields = (struct brc_fieldset)BRC_FIELDSET(point_fields, struct points);
+    fixture_sim(f, &model, "", "", "");
+}
+
+/* A simulation of the null model with something in every table. */
+static void make_sim(struct fixture *f)
+{
+    fixture_grid(f, 3, 2, 2, 0.01, 0.5);
+    start_sim(f);
+    fixture_steps(f, 25);
+    const int32_t pair[][2] = {{0, 3}, {1, 2}, {1, 5}};
+    CHECK_OK(&f->ctx, brc_contacts_set(&f->ctx, &f->sim.pairs, pair, 3));
+    CHECK_OK(&f->ctx, brc_contacts_points(&f->ctx, &f->sim.pairs, 1, 4));
+    CHECK_OK(&f->ctx, brc_contacts_points(&f->ctx, &f->sim.pairs, 0, 2));
+    struct points *p = f->sim.pairs.point_columns; /* row 1 before row 0 */
+    for (int i = 0; i < 6; i++)
+        p->u[i] = 100 + i;
+    f->sim.pairs.f[2][1] = -12.5;
+    f->sim.pairs.status[2] = BRC_BROKEN;
+    const struct brc_event event = {.a = 1, .b = 5, .facet = 2, .mode = BRC_MODE_SHEAR};
+    brc_events_add(&f->ctx, &f->sim.events, 17, &event);
+    f->sim.ledger.friction = 1.5;
+    f->sim.rig.force_peak = 3e4;
+}
+
+static void save(struct fixture *f, const char *path)
+{
+    CHECK_OK(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra));
+}
+
+static void test_round_trip(void **state)
+{
+    struct fixture *f = *state;
+    char path[64], *text;
+    make_path(path);
+    make_sim(f);
+    uint64_t hash = brc_sim_hash(&f->sim);
+    save(f, path);
+    assert_true(brc_sim_hash(&f->sim) == hash);
+    start_sim(f);
+    assert_false(brc_sim_hash(&f->sim) == hash);
+    CHECK_OK(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra));
+    assert_true(brc_sim_hash(&f->sim) == hash);
+    assert_int_equal(f->sim.step, 25);
+    assert_int_equal(f->sim.pairs.n, 3);
+    assert_int_equal(f->sim.pairs.np[1], 4);
+    assert_int_equal(f->sim.pairs.p0[1], 2);
+    const struct points *p = f->sim.pairs.point_columns;
+    const double expected[6] = {104, 105, 100, 101, 102, 103};
+    CHECK_NEAR_ARRAY(p->u, expected, 6, 0, 0);
+    assert_true(f->sim.pairs.f[2][1] == -12.5);
+    assert_int_equal(f->sim.events.count[BRC_MODE_SHEAR], 1);
+    assert_int_equal(f->sim.rig.curve.table.n, 2);
+    assert_true(f->sim.ledger.friction == 1.5);
+    CHECK_OK(&f->ctx, brc_h5_read_text(&f->ctx, path, "case", &text));
+    assert_string_equal(text, texts[0].text);
+    free(text);
+    CHECK_OK(&f->ctx, brc_h5_read_text(&f->ctx, path, "empty", &text));
+    assert_string_equal(text, "");
+    free(text);
+    unlink(path);
+}
+
+static void test_equal_states_give_equal_files(void **state)
+{
+    struct fixture *f = *state;
+    char path[64], other[80], command[200];
+    make_path(path);
+    snprintf(other, sizeof other, "%s.2", path);
+    make_sim(f);
+    save(f, path);
+    save(f, other);
+    snprintf(command, sizeof command, "cmp %s %s", path, other);
+    assert_int_equal(system(command), 0);
+    unlink(path);
+    unlink(other);
+}
+
+static void fails_to_load(struct fixture *f, const char *path, int code, const char *text)
+{
+    CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), code, text);
+    start_sim(f);
+}
+
+static void test_foreign_files(void **state)
+{
+    struct fixture *f = *state;
+    struct brc_model other = brc_model_null;
+    char path[64];
+    make_path(path);
+    make_sim(f);
+    save(f, path);
+    other.name = "other";
+    fixture_sim(f, &other, "", "", "");
+    fails_to_load(f, path, BRC_ERR_INPUT, "model null, expected other");
+    fixture_grid(f, 2, 2, 2, 0.01, 0.5);
+    start_sim(f);
+    fails_to_load(f, path, BRC_ERR_INPUT, "rows of bodies");
+    unlink(path);
+    fails_to_load(f, path, BRC_ERR_IO, "missing");
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("this is no HDF5 file", out);
+    fclose(out);
+    fails_to_load(f, path, BRC_ERR_IO, "no HDF5 file");
+    unlink(path);
+}
+
+/* Any flipped byte of the file is noticed, or does not matter to the state. */
+static void test_damage(void **state)
+{
+    struct fixture *f = *state;
+    char path[64];
+    long size, noticed = 0, tried = 0;
+    make_path(path);
+    make_sim(f);
+    uint64_t hash = brc_sim_hash(&f->sim);
+    save(f, path);
+    FILE *file = fopen(path, "r+");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    size = ftell(file);
+    for (long at = 4096; at < size; at += 997, tried++) {
+        fseek(file, at, SEEK_SET);
+        int byte = fgetc(file);
+        fseek(file, at, SEEK_SET);
+        fputc(byte ^ 0x5a, file);
+        fflush(file);
+        start_sim(f);
+        if (brc_h5_load(&f->ctx, path, &f->sim, &extra) != 0)
+            noticed++;
+        else
+            assert_true(brc_sim_hash(&f->sim) == hash);
+        brc_error_clear(&f->ctx);
+        fseek(file, at, SEEK_SET);
+        fputc(byte, file);
+        fflush(file);
+    }
+    fclose(file);
+    assert_true(tried > 20 && noticed > 0);
+    unlink(path);
+}
+
+static void test_failed_save_keeps_the_old_file(void **state)
+{
+    struct fixture *f = *state;
+    char folder[64], path[80], command[300];
+    snprintf(folder, sizeof folder, "/tmp/breccia-test-%ld", (long)getpid());
+    snprintf(path, sizeof path, "%s/none/state.h5", folder);
+    make_sim(f);
+    CHECK_FAILS(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cannot create");
+    /* the temporary's name is taken by a folder */
+    snprintf(command, sizeof command, "mkdir -p %s/state.h5.part && echo old >%s/state.h5", folder,
+             folder);
+    assert_int_equal(system(command), 0);
+    snprintf(path, sizeof path, "%s/state.h5", folder);
+    CHECK_FAILS(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cannot create");
+    snprintf(command, sizeof command, "grep -qx old %s && rm -r %s", path, folder);
+    assert_int_equal(system(command), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(test_round_trip),
+        FIXTURE_TEST(test_equal_states_give_equal_files),
+        FIXTURE_TEST(test_foreign_files),
+        FIXTURE_TEST(test_damage),
+        FIXTURE_TEST(test_failed_save_keeps_the_old_file),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
