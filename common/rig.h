@@ -15,7 +15,7 @@ enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
            "compression and tension along z, Brazilian along y; none: no platens")                 \
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                  \
            "adaptive: the rate follows the unbalanced force; fixed: at rate")                      \
-    REAL(rate, "1/s", "1e-8 1/s", "(0, inf)",                                                      \
+    REAL(rate, "1/s", "1e-7 1/s", "(0, inf)",                                                      \
          "fixed loading: strain rate; adaptive: first and smallest one; in the quasi-static regime one step " \
          "is one second")                                                                          \
     REAL(target, "1", "0.003", "(0, 1)", "adaptive: unbalanced-force ratio to hold")                \
