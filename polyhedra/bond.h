@@ -34,12 +34,21 @@ struct poly_bond_result {
     double energy;  /* J, stored */
 };
 
+/* atan2(y, x), by its series where that is exact to round-off. */
+static inline double poly_angle(double x, double y)
+{
+    double t = y / x;
+    if (x > 0 && fabs(t) < 1e-3)
+        return t * (1 - t * t * (1.0 / 3 - t * t / 5));
+    return atan2(y, x);
+}
+
 /* Relative rotation about n of two tangents. */
 static inline double poly_twist(const double n[3], const double ta[3], const double tb[3])
 {
     double c[3];
     brc_cross(c, ta, tb);
-    return atan2(brc_dot(c, n), brc_dot(ta, tb) - brc_dot(ta, n) * brc_dot(tb, n));
+    return poly_angle(brc_dot(ta, tb) - brc_dot(ta, n) * brc_dot(tb, n), brc_dot(c, n));
 }
 
 static inline void poly_bond_law(struct poly_bond_result *r, const struct poly_bond *bond,

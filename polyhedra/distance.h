@@ -247,8 +247,38 @@ static inline void poly_foot_closed(struct poly_foot *r, const struct poly_core 
     poly_foot_point(r, p, nearest, f->n, poly_place(index, POLY_ON_FACE));
 }
 
-/* Two edges. The lines' closest points are p0 + ta a and q0 + tb b, with unit a, b; their distance
- * along cross is the signed gap. Feet are not clamped. */
+/* The lines of two edges p0 + s a and q0 + t b, s and t in [0, 1] on the edges; no division yet. */
+struct poly_lines {
+    double a[3], b[3], r[3]; /* r = q0 - p0 */
+    double m[3], m2;         /* a x b */
+    double c;                /* a . b */
+    double s, t;             /* feet of the common perpendicular, times m2 */
+};
+
+/* False when the edges are parallel (relative test). */
+static inline bool poly_cross_lines(struct poly_lines *x, const double p[2][3], double la,
+                                    const double q[2][3], double lb)
+{
+    double la2 = la * la, lb2 = lb * lb;
+    brc_sub(x->a, p[1], p[0]);
+    brc_sub(x->b, q[1], q[0]);
+    brc_sub(x->r, q[0], p[0]);
+    brc_cross(x->m, x->a, x->b);
+    x->m2 = brc_norm2(x->m);
+    x->c = brc_dot(x->a, x->b);
+    double ra = brc_dot(x->r, x->a), rb = brc_dot(x->r, x->b);
+    x->s = ra * lb2 - x->c * rb;
+    x->t = x->c * ra - rb * la2;
+    return x->m2 > POLY_PARALLEL * la2 * lb2;
+}
+
+/* True when both feet are strictly inside their edges. */
+static inline bool poly_feet_inside(const struct poly_lines *x)
+{
+    return x->s > 0 && x->s < x->m2 && x->t > 0 && x->t < x->m2;
+}
+
+/* Two edges that cross: the closest points of their lines. */
 struct poly_crossing {
     double a[3], b[3]; /* unit directions */
     double c, sin2;    /* cosine, squared sine of the angle */
@@ -257,33 +287,18 @@ struct poly_crossing {
     double d;          /* m, from line a to line b along cross */
 };
 
-/* False when the edges are parallel (relative test). */
-static inline bool poly_cross_edges(struct poly_crossing *x, const double p[2][3], double la,
-                                    const double q[2][3], double lb)
+static inline void poly_cross_edges(struct poly_crossing *x, const struct poly_lines *l, double la,
+                                    double lb)
 {
-    double r[3], m[3];
-    for (int i = 0; i < 3; i++) {
-        x->a[i] = (p[1][i] - p[0][i]) / la;
-        x->b[i] = (q[1][i] - q[0][i]) / lb;
-        r[i] = q[0][i] - p[0][i];
-    }
-    brc_cross(m, x->a, x->b);
-    x->sin2 = brc_norm2(m);
-    if (!(x->sin2 > POLY_PARALLEL))
-        return false;
-    x->c = brc_dot(x->a, x->b);
-    double ra = brc_dot(r, x->a), rb = brc_dot(r, x->b), scale = 1 / x->sin2;
-    x->ta = (ra - x->c * rb) * scale;
-    x->tb = (x->c * ra - rb) * scale;
-    brc_scale(x->cross, m, sqrt(scale));
-    x->d = brc_dot(r, x->cross);
-    return true;
-}
-
-/* True when both feet are strictly inside their edges. */
-static inline bool poly_feet_inside(const struct poly_crossing *x, double la, double lb)
-{
-    return x->ta > 0 && x->ta < la && x->tb > 0 && x->tb < lb;
+    double per_a = 1 / la, per_b = 1 / lb, per_m = 1 / l->m2;
+    brc_scale(x->a, l->a, per_a);
+    brc_scale(x->b, l->b, per_b);
+    x->c = l->c * per_a * per_b;
+    x->sin2 = l->m2 * (per_a * per_a) * (per_b * per_b);
+    x->ta = l->s * per_m * la;
+    x->tb = l->t * per_m * lb;
+    brc_scale(x->cross, l->m, sqrt(per_m));
+    x->d = brc_dot(l->r, x->cross);
 }
 
 static inline double poly_clamp(double t, double high)
@@ -291,46 +306,46 @@ static inline double poly_clamp(double t, double high)
     return fmin(fmax(t, 0), high);
 }
 
-/* Feet of the closest points of two closed edges (eq 1). Parallel edges: the middle of the part
- * where they face each other. */
-static inline void poly_closed_feet(const double p[2][3], double la, const double q[2][3],
-                                    double lb, double *ta, double *tb)
+/* Feet of the closest points of two closed edges (eq 1), in [0, 1]. Parallel edges: the middle of
+ * the part where they face each other. */
+static inline void poly_closed_feet(const struct poly_lines *x, bool parallel, double la, double lb,
+                                    double *s, double *t)
 {
-    struct poly_crossing x;
-    double r[3];
-    brc_sub(r, q[0], p[0]);
-    if (!poly_cross_edges(&x, p, la, q, lb)) {
-        double low = brc_dot(r, x.a), high = low + (brc_dot(x.a, x.b) > 0 ? lb : -lb);
-        double from = poly_clamp(fmin(low, high), la), to = poly_clamp(fmax(low, high), la);
-        *ta = (from + to) / 2;
-        *tb = poly_clamp((*ta - low) * (high > low ? 1 : -1), lb);
+    double la2 = la * la, lb2 = lb * lb, ra = brc_dot(x->r, x->a), rb = brc_dot(x->r, x->b);
+    if (parallel) {
+        double low = ra / la2, high = low + (x->c > 0 ? lb / la : -lb / la);
+        double from = poly_clamp(fmin(low, high), 1), to = poly_clamp(fmax(low, high), 1);
+        *s = (from + to) / 2;
+        *t = poly_clamp((*s - low) / (high - low), 1);
         return;
     }
-    double ra = brc_dot(r, x.a), rb = brc_dot(r, x.b);
-    *ta = poly_clamp(x.ta, la);
-    *tb = *ta * x.c - rb;
-    if (*tb < 0 || *tb > lb) {
-        *tb = poly_clamp(*tb, lb);
-        *ta = poly_clamp(*tb * x.c + ra, la);
+    *s = poly_clamp(x->s / x->m2, 1);
+    *t = (*s * x->c - rb) / lb2;
+    if (*t < 0 || *t > 1) {
+        *t = poly_clamp(*t, 1);
+        *s = poly_clamp((*t * x->c + ra) / la2, 1);
     }
 }
 
-/* Vector from the foot on p to the foot on q. */
-static inline void poly_between_feet(double r[3], const double p[2][3], double la,
-                                     const double q[2][3], double lb, double ta, double tb)
+/* Vector between the closest points of two closed edges (eq 1); returns its length. */
+static inline double poly_between_edges(double r[3], double *s, const struct poly_lines *x,
+                                        bool parallel, double la, double lb)
 {
+    double t;
+    poly_closed_feet(x, parallel, la, lb, s, &t);
     for (int i = 0; i < 3; i++)
-        r[i] = q[0][i] + tb / lb * (q[1][i] - q[0][i]) - p[0][i] - ta / la * (p[1][i] - p[0][i]);
+        r[i] = x->r[i] + t * x->b[i] - *s * x->a[i];
+    return brc_norm(r); /* eq:gt12:1 */
 }
 
-/* Distance of two closed edges (eq 1). */
+/* Distance of two closed edges. */
 static inline double poly_edge_distance(const double p[2][3], double la, const double q[2][3],
                                         double lb)
 {
-    double ta, tb, r[3];
-    poly_closed_feet(p, la, q, lb, &ta, &tb);
-    poly_between_feet(r, p, la, q, lb, ta, tb);
-    return brc_norm(r); /* eq:gt12:1 */
+    struct poly_lines x;
+    double r[3], s;
+    bool parallel = !poly_cross_lines(&x, p, la, q, lb);
+    return poly_between_edges(r, &s, &x, parallel, la, lb);
 }
 
 #endif

@@ -18,6 +18,7 @@ struct side {
     const double (*v)[3]; /* own vertices in space */
     const double *x;      /* the other's pose */
     const double (*r)[3];
+    double radius;     /* of the own core about its centre */
     double *height;    /* [n_vertices of own][n_faces of other] above the planes */
     bool *near_vertex; /* may come within reach of the other core */
     bool *near_edge;
@@ -56,9 +57,14 @@ int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct pol
     return 0;
 }
 
-static int add_feature(struct brc_context *ctx, struct poly_list *l, int kind, int32_t i, int32_t j)
+/* Vertex v of the own core and a face or place of the other. */
+static int add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, int32_t v,
+                      int32_t place, int32_t near)
 {
-    struct poly_feature f = {.i = i, .j = j, .kind = (uint8_t)kind};
+    struct poly_feature f = {.i = of_b ? place : v,
+                             .j = of_b ? v : place,
+                             .near = near,
+                             .kind = of_b ? POLY_VERTEX_B : POLY_VERTEX_A};
     return poly_list_add(ctx, l, &f);
 }
 
@@ -116,15 +122,30 @@ static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct
             continue;
         poly_foot_closed(&foot, s->other, f, q);
         if (foot.s < reach || highest <= 0)
-            BRC_TRY(add_feature(ctx, l, of_b ? POLY_VERTEX_B : POLY_VERTEX_A, of_b ? f : v,
-                                of_b ? v : f));
+            BRC_TRY(add_vertex(ctx, l, of_b, v, f, POLY_NONE_NEAR));
     }
     return 0;
 }
 
-static int list_vertices(struct brc_context *ctx, struct poly_list *l, const struct side *s,
-                         bool of_b, enum poly_rule rule, double reach)
+/* Vertices of the other core (q: of the own one in its frame) that may come within the range where
+ * they lower the weight. */
+static int32_t near_vertex(const struct poly_core *other, const double q[3], double range)
 {
+    int32_t near = POLY_NONE_NEAR;
+    for (int32_t u = 0; u < other->n_vertices; u++) {
+        double r[3];
+        brc_sub(r, q, other->vertex[u]);
+        if (brc_norm2(r) < range * range)
+            near = near == POLY_NONE_NEAR ? u : POLY_MANY_NEAR;
+    }
+    return near;
+}
+
+static int list_vertices(struct brc_context *ctx, struct poly_list *l, const struct side *s,
+                         const struct poly_pair *p, enum poly_rule rule, double skin)
+{
+    bool of_b = s->own == &p->b;
+    double reach = p->rest + skin, range = sqrt(p->rest * p->rest + p->ell * p->ell) + skin;
     for (int32_t v = 0; v < s->own->n_vertices; v++) {
         if (!s->near_vertex[v])
             continue;
@@ -137,16 +158,61 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
         poly_to_body(q, s->r, s->x, s->v[v]);
         poly_foot_walk(&foot, s->other, q, poly_place(poly_highest(s->other, q, &h), POLY_ON_FACE));
         if (foot.s < reach)
-            BRC_TRY(add_feature(ctx, l, of_b ? POLY_VERTEX_B : POLY_VERTEX_A, of_b ? foot.place : v,
-                                of_b ? v : foot.place));
+            BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near_vertex(s->other, q, range)));
     }
     return 0;
 }
 
+/* Distance of a point to an edge. */
+static double point_to_edge(const double x[3], const double e[2][3], const double dir[3],
+                            double length)
+{
+    double r[3];
+    brc_sub(r, x, e[0]);
+    brc_axpy(r, -poly_clamp(brc_dot(r, dir), length), dir);
+    return brc_norm(r);
+}
+
+/* How far the end at `end` of edge p stands beyond the plane of line q and the common
+ * perpendicular: positive when the foot on p is outside that end. A relative motion by skin, with
+ * turns of at most `turn`, changes it by less than *change. */
+static double overhang(const double p[2][3], const double q[2][3], double lq, int end, double turn,
+                       double skin, double *change)
+{
+    double a[3], b[3], m[3], out[3], r[3];
+    brc_sub(a, p[end], p[1 - end]);
+    brc_sub(b, q[1], q[0]);
+    brc_normalise(a, a);
+    brc_normalise(b, b);
+    brc_cross(m, a, b);
+    double sine = brc_normalise(m, m);
+    brc_cross(out, b, m);
+    /* the plane's normal, along the edge's way out of this end */
+    if (brc_dot(out, a) < 0)
+        brc_scale(out, out, -1);
+    brc_sub(r, q[0], p[end]);
+    double near = point_to_edge(p[end], q, b, lq) + skin;
+    *change = sine > 10 * turn ? skin + near * turn * (1 + 2.2 / sine) : HUGE_VAL;
+    return brc_dot(r, out);
+}
+
+/* True when no motion within the skin brings both feet inside their edges. */
+static bool stays_outside(const double ends[4][3], const double length[2], double turn, double skin)
+{
+    for (int k = 0; k < 4; k++) {
+        const double(*p)[3] = ends + (k & 2), (*q)[3] = ends + (2 - (k & 2));
+        double change, out = overhang(p, q, length[k < 2], k & 1, turn, skin, &change);
+        if (out > change)
+            return true;
+    }
+    return false;
+}
+
 static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct side sides[2],
-                      double reach)
+                      enum poly_rule rule, double reach, double skin)
 {
     const struct side *a = &sides[0], *b = &sides[1];
+    double turn = skin / fmin(a->radius, b->radius);
     for (int32_t i = 0; i < a->own->n_edges; i++) {
         if (!a->near_edge[i])
             continue;
@@ -158,13 +224,27 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
             if (!b->near_edge[j])
                 continue;
             const struct poly_edge *eb = &b->own->edge[j];
+            const double length[2] = {ea->length, eb->length};
             brc_copy(ends[2], b->v[eb->v[0]]);
             brc_copy(ends[3], b->v[eb->v[1]]);
-            if (poly_edge_distance(ends, ea->length, ends + 2, eb->length) < reach)
-                BRC_TRY(add_feature(ctx, l, POLY_EDGES, i, j));
+            if (poly_edge_distance(ends, ea->length, ends + 2, eb->length) >= reach)
+                continue;
+            if (rule != POLY_CLOSED && stays_outside(ends, length, turn, skin))
+                continue;
+            struct poly_feature f = {.i = i, .j = j, .near = POLY_NONE_NEAR, .kind = POLY_EDGES};
+            BRC_TRY(poly_list_add(ctx, l, &f));
         }
     }
     return 0;
+}
+
+/* Radius of a core about its centre: turns are at most its path over this. */
+static double core_radius(const struct poly_core *c)
+{
+    double most = 0;
+    for (int32_t v = 0; v < c->n_vertices; v++)
+        most = fmax(most, brc_norm2(c->vertex[v]));
+    return sqrt(most);
 }
 
 int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
@@ -177,17 +257,17 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
     double reach = p->rest + skin;
     l->n = 0;
     BRC_TRY(reserve(ctx, l, ha + hb, na + nb));
-    struct side sides[2] = {
-        {&p->a, &p->b, p->va, p->xb, p->rb, l->height, l->near, l->near + p->a.n_vertices},
-        {&p->b, &p->a, p->vb, p->xa, p->ra, l->height + ha, l->near + na,
-         l->near + na + p->b.n_vertices}};
+    struct side sides[2] = {{&p->a, &p->b, p->va, p->xb, p->rb, core_radius(&p->a), l->height,
+                             l->near, l->near + p->a.n_vertices},
+                            {&p->b, &p->a, p->vb, p->xa, p->ra, core_radius(&p->b), l->height + ha,
+                             l->near + na, l->near + na + p->b.n_vertices}};
     double gap = fmax(measure_heights(&sides[0]), measure_heights(&sides[1]));
     *allowance = fmax(skin, gap - p->rest);
     if (gap >= reach)
         return 0;
     for (int k = 0; k < 2; k++) {
         find_near(&sides[k], reach);
-        BRC_TRY(list_vertices(ctx, l, &sides[k], k == 1, rule, reach));
+        BRC_TRY(list_vertices(ctx, l, &sides[k], p, rule, skin));
     }
-    return list_edges(ctx, l, sides, reach);
+    return list_edges(ctx, l, sides, rule, reach, skin);
 }

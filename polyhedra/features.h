@@ -9,11 +9,19 @@ enum poly_rule { POLY_CLOSED, POLY_STRICT, POLY_MERGED };
 enum poly_kind { POLY_VERTEX_A, POLY_VERTEX_B, POLY_EDGES };
 
 /* A feature pair. POLY_VERTEX_A: vertex i of a and face j of b (merged: the place of its foot on
- * b); POLY_VERTEX_B: face (place) i of a and vertex j of b; POLY_EDGES: edges i and j. */
+ * b); POLY_VERTEX_B: face (place) i of a and vertex j of b; POLY_EDGES: edges i and j. near: the
+ * only vertex of the other core that may come near enough to lower a merged vertex's weight. */
 struct poly_feature {
-    int32_t i, j;
+    int32_t i, j, near;
     uint8_t kind;
 };
+enum { POLY_NONE_NEAR = -1, POLY_MANY_NEAR = -2 };
+
+/* The place that a feature pair remembers. */
+static inline int32_t *poly_remembered(struct poly_feature *f)
+{
+    return f->kind == POLY_VERTEX_B ? &f->i : &f->j;
+}
 
 struct poly_list {
     struct poly_feature *feature;
@@ -104,8 +112,15 @@ static inline bool poly_foot_on_face(struct poly_foot *foot, const struct poly_c
 
 /* Gradient parts of a vertex spring: its weight falls towards the vertices u of the other core. */
 static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], const double (*u)[3],
-                                     int32_t n, double sign, const struct poly_pair *p)
+                                     int32_t n, int32_t near, double sign,
+                                     const struct poly_pair *p)
 {
+    if (near == POLY_NONE_NEAR)
+        return;
+    if (near >= 0) {
+        u += near;
+        n = 1;
+    }
     double grad[3], arm[3];
     t->weight = poly_vertex_weight(v, u, n, p->rest * p->rest, p->ell * p->ell, grad);
     t->graded = t->weight < 1;
@@ -117,9 +132,10 @@ static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], co
 }
 
 /* Vertex v (in space) of one body against the core c of the other. *place is the face, or under
- * `merged` the remembered place, which is updated. */
+ * `merged` the remembered place, which is updated; near is the vertex of the other core that may
+ * lower the weight. */
 static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pair *p,
-                                     const bool of_b, int32_t vertex, int32_t *place,
+                                     const bool of_b, int32_t vertex, int32_t *place, int32_t near,
                                      const enum poly_rule rule)
 {
     const struct poly_core *c = of_b ? &p->a : &p->b;
@@ -134,53 +150,54 @@ static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pai
         poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
         return true;
     }
+    /* the height above any plane is a lower bound of the distance */
+    if ((*place & 3) == POLY_ON_FACE && poly_height(&c->face[*place >> 2], q) >= p->rest)
+        return false;
     poly_foot_walk(&foot, c, q, *place);
     *place = foot.place;
     if (foot.s >= p->rest)
         return false;
     poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
-    poly_weigh_vertex(t, v, of_b ? p->va : p->vb, c->n_vertices, sign, p);
+    poly_weigh_vertex(t, v, of_b ? p->va : p->vb, c->n_vertices, near, sign, p);
     return true;
 }
 
 /* Edges that cross with inside feet. The side on which they met stays in *active (1 or 2), so that
  * edges that have passed through each other are still pushed back. */
 static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_pair *p,
-                                       const struct poly_edge *ea, const struct poly_edge *eb,
-                                       const double ends[4][3], uint8_t *active,
+                                       const struct poly_lines *lines, double la, double lb,
+                                       const double p0[3], uint8_t *active,
                                        const enum poly_rule rule)
 {
+    double rm = brc_dot(lines->r, lines->m);
+    if (!poly_feet_inside(lines) || rm * rm >= p->rest * p->rest * lines->m2)
+        return false;
     struct poly_crossing x;
-    if (!poly_cross_edges(&x, ends, ea->length, ends + 2, eb->length))
-        return false;
-    if (fabs(x.d) >= p->rest || !poly_feet_inside(&x, ea->length, eb->length))
-        return false;
+    poly_cross_edges(&x, lines, la, lb);
     bool flipped = *active == 0 ? x.d < 0 : *active == 2;
     double sign = flipped ? -1 : 1, d = sign * x.d;
     *active = flipped ? 2 : 1;
     brc_scale(t->n, x.cross, sign);   /* eq:gt12:3 */
     poly_touch_begin(t, p->rest - d); /* eq:gt12:5 */
     for (int k = 0; k < 3; k++)
-        t->x[k] = ends[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
+        t->x[k] = p0[k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
     if (rule == POLY_MERGED)
-        poly_crossing_weight(t, &x, ea->length, eb->length, p->ell, d);
+        poly_crossing_weight(t, &x, la, lb, p->ell, d);
     return t->weight > 0;
 }
 
 /* Closed edges by eq 1, where a foot is at an end. */
 static inline bool poly_touch_closed_edges(struct poly_touch *t, const struct poly_pair *p,
-                                           const struct poly_edge *ea, const struct poly_edge *eb,
-                                           const double ends[4][3])
+                                           const struct poly_lines *lines, bool parallel, double la,
+                                           double lb, const double p0[3])
 {
-    double ta, tb, r[3];
-    poly_closed_feet(ends, ea->length, ends + 2, eb->length, &ta, &tb);
-    poly_between_feet(r, ends, ea->length, ends + 2, eb->length, ta, tb);
-    double d = brc_normalise(t->n, r);
+    double r[3], s, d = poly_between_edges(r, &s, lines, parallel, la, lb);
     if (d >= p->rest || d == 0)
         return false;
+    brc_scale(t->n, r, 1 / d);
     poly_touch_begin(t, p->rest - d);
     for (int k = 0; k < 3; k++)
-        t->x[k] = ends[0][k] + ta / ea->length * (ends[1][k] - ends[0][k]) + 0.5 * r[k];
+        t->x[k] = p0[k] + s * lines->a[k] + 0.5 * r[k];
     return true;
 }
 
@@ -188,31 +205,32 @@ static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair
                                     int32_t j, uint8_t *active, const enum poly_rule rule)
 {
     const struct poly_edge *ea = &p->a.edge[i], *eb = &p->b.edge[j];
+    struct poly_lines lines;
     double ends[4][3];
     brc_copy(ends[0], p->va[ea->v[0]]);
     brc_copy(ends[1], p->va[ea->v[1]]);
     brc_copy(ends[2], p->vb[eb->v[0]]);
     brc_copy(ends[3], p->vb[eb->v[1]]);
-    if (poly_touch_crossing(t, p, ea, eb, ends, active, rule))
+    bool crossing = poly_cross_lines(&lines, ends, ea->length, ends + 2, eb->length);
+    if (crossing &&
+        poly_touch_crossing(t, p, &lines, ea->length, eb->length, ends[0], active, rule))
         return true;
-    *active = 0;
-    if (rule != POLY_CLOSED)
-        return false;
-    bool touches = poly_touch_closed_edges(t, p, ea, eb, ends);
-    *active = touches;
-    return touches;
+    *active = rule == POLY_CLOSED &&
+              poly_touch_closed_edges(t, p, &lines, !crossing, ea->length, eb->length, ends[0]);
+    return *active;
 }
 
-/* How a feature pair touches now; *active is its side (0 when apart), i and j may be updated. */
-static inline bool poly_touch(struct poly_touch *t, const struct poly_pair *p, int kind, int32_t *i,
-                              int32_t *j, uint8_t *active, const enum poly_rule rule)
+/* How a listed feature pair touches now; *active is its side (0 when apart), and the remembered
+ * place may be updated. */
+static inline bool poly_touch(struct poly_touch *t, const struct poly_pair *p,
+                              const struct poly_feature *f, int32_t *place, uint8_t *active,
+                              const enum poly_rule rule)
 {
-    if (kind == POLY_EDGES)
-        return poly_touch_edges(t, p, *i, *j, active, rule);
-    bool touches = kind == POLY_VERTEX_A ? poly_touch_vertex(t, p, false, *i, j, rule)
-                                         : poly_touch_vertex(t, p, true, *j, i, rule);
-    *active = touches;
-    return touches;
+    if (f->kind == POLY_EDGES)
+        return poly_touch_edges(t, p, f->i, f->j, active, rule);
+    bool of_b = f->kind == POLY_VERTEX_B;
+    *active = poly_touch_vertex(t, p, of_b, of_b ? f->j : f->i, place, f->near, rule);
+    return *active;
 }
 
 #endif

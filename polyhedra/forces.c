@@ -124,8 +124,9 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
     size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
     for (size_t p = first; p < end; p++) {
         struct poly_touch t;
-        if (poly_touch(&t, &pair, points->kind[p], &points->i[p], &points->j[p], &points->active[p],
-                       rule)) {
+        struct poly_feature f = poly_point(points, p);
+        int32_t *place = f.kind == POLY_VERTEX_B ? &points->i[p] : &points->j[p];
+        if (poly_touch(&t, &pair, &f, place, &points->active[p], rule)) {
             poly_act(ledger, s, &t, &law, m, points, p, friction, viscous);
             s->gap = fmin(s->gap, -t.delta);
         } else if (points->weight[p] > 0) {
@@ -136,6 +137,16 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
     }
 }
 
+/* Counts the step's relative path against the list's allowance. */
+static inline bool keeps_list(const struct brc_sim *sim, const struct poly_rows *rows, size_t row,
+                              const struct poly_motion *m)
+{
+    const double *reach = sim->bodies.reach;
+    const struct brc_contacts *c = &sim->pairs;
+    rows->room[row] -= poly_relative_path(m, reach[c->a[row]], reach[c->b[row]]);
+    return rows->room[row] > 0;
+}
+
 __attribute__((always_inline)) static inline void
 pairs_loop(struct brc_sim *sim, struct poly_state *st, const enum poly_rule rule,
            const bool friction, const bool viscous, const bool accounts)
@@ -143,9 +154,18 @@ pairs_loop(struct brc_sim *sim, struct poly_state *st, const enum poly_rule rule
     struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
     for (size_t row = 0; row < c->n; row++) {
+        bool listed = c->np[row] > 0;
+        if (!listed && poly_is_awake(sim, c, row)) {
+            if (poly_list_row(sim, st, row) != 0)
+                return;
+        } else if (poly_is_idle(c, row)) {
+            continue;
+        }
         int32_t a = c->a[row], b = c->b[row];
         struct poly_motion m;
         poly_start_motion(&m, sim, a, b);
+        if (listed && !keeps_list(sim, rows, row, &m) && poly_list_row(sim, st, row) != 0)
+            return;
         struct poly_sums s = {.gap =
                                   rows->wake[row] - sim->bodies.travel[a] - sim->bodies.travel[b]};
         struct poly_wrench bond = {0};
@@ -199,8 +219,7 @@ void poly_forces(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
     poly_world(sim, st);
-    if (poly_list_rows(sim, st) == 0)
-        st->pairs_loop(sim, st);
+    st->pairs_loop(sim, st);
 }
 
 void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
@@ -219,11 +238,10 @@ void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
                                         .b = c->b[row],
                                         .row = row,
                                         .point = p,
-                                        .kind = points->kind[p],
-                                        .i = points->i[p],
-                                        .j = points->j[p]};
+                                        .feature = poly_point(points, p)};
             uint8_t active = points->active[p];
-            if (poly_touch(&found.touch, &pair, found.kind, &found.i, &found.j, &active, rule))
+            if (poly_touch(&found.touch, &pair, &found.feature, poly_remembered(&found.feature),
+                           &active, rule))
                 visit(user, &found);
         }
     }

@@ -47,7 +47,8 @@ struct poly_params {
 /* Contact fields. Tables of work hold force and moment about a of the last step, for the trapezoid
  * rule of ledger.h; they are written only while the ledger is on. */
 #define POLY_ROW_FIELDS(SCALAR, VECTOR)                                                         \
-    SCALAR(double, wake, BRC_STATE, "m", "travel of a and b at which features are listed anew") \
+    SCALAR(double, wake, BRC_STATE, "m", "no features listed: travel of a and b to list anew")  \
+    SCALAR(double, room, BRC_STATE, "m", "features listed: relative path left to list anew")    \
     VECTOR(double, ca, 3, BRC_STATE, "m", "material point of the bond in the frame of a")       \
     VECTOR(double, cb, 3, BRC_STATE, "m", "the same in the frame of b")                         \
     VECTOR(double, na, 3, BRC_STATE, "1", "normal of the face of a, outward, in its frame")     \
@@ -65,20 +66,27 @@ struct poly_rows {
 };
 
 /* Points: feature pairs near enough to touch before the row is listed anew. */
-#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                             \
-    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")    \
-    SCALAR(uint8_t, active, BRC_STATE, "1",                                           \
-           "0 apart, 1 in contact, 2 the same with edges whose "                      \
-           "cross product points from b to a")                                        \
-    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge") \
-    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                \
-    SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                    \
-    VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                        \
+#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                       \
+    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")              \
+    SCALAR(uint8_t, active, BRC_STATE, "1",                                                     \
+           "0 apart, 1 in contact, 2 the same with edges whose "                                \
+           "cross product points from b to a")                                                  \
+    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")           \
+    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                          \
+    SCALAR(int32_t, near, BRC_STATE, "1", "vertex that may lower the weight; -1 none, -2 many") \
+    SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                              \
+    VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                                  \
     VECTOR(double, xi, 3, BRC_STATE, "m", "tangential displacement, eq 9")
 
 struct poly_points {
     POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
+
+static inline struct poly_feature poly_point(const struct poly_points *points, size_t p)
+{
+    return (struct poly_feature){
+        .i = points->i[p], .j = points->j[p], .near = points->near[p], .kind = points->kind[p]};
+}
 
 struct poly_state;
 typedef void poly_loop(struct brc_sim *sim, struct poly_state *st);
@@ -107,9 +115,9 @@ void poly_world(const struct brc_sim *sim, const struct poly_state *st);
 int poly_open_bonds(struct brc_sim *sim, void *state);
 int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
                      const struct brc_candidates *platens);
-/* Lists the features of every row whose bodies have used up its allowance. */
-int poly_list_rows(struct brc_sim *sim, struct poly_state *st);
-int poly_list_walls(struct brc_sim *sim, struct poly_state *st);
+/* Lists the features of a row of pairs, or of platens. */
+int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row);
+int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row);
 
 /* forces.c, walls.c: the loops; that over pairs is chosen for the present options. */
 void poly_forces(struct brc_sim *sim, void *state);
@@ -139,8 +147,7 @@ void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, s
 struct poly_active {
     int32_t a, b;      /* bodies */
     size_t row, point; /* of sim->pairs */
-    int kind;          /* enum poly_kind */
-    int32_t i, j;      /* features of a and b */
+    struct poly_feature feature;
     struct poly_touch touch;
 };
 /* Visits the active feature contacts of all grain pairs, computed from the present poses. */

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Skin of a row's feature list, in radii R: a smaller one lists fewer pairs, more often. */
-static const double LIST_SKIN = 0.05;
+/* Skins of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
+static const double LIST_SKIN = 0.01, WALL_SKIN = 0.05;
 /* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
 static const double PLATEN_TOLERANCE = 1e-6;
 
@@ -237,6 +237,7 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
         points->active[kept] = points->active[p];
         points->i[kept] = points->i[p];
         points->j[kept] = points->j[p];
+        points->near[kept] = points->near[p];
         points->weight[kept] = points->weight[p];
         memmove(points->n[kept], points->n[p], sizeof points->n[p]);
         memmove(points->xi[kept], points->xi[p], sizeof points->xi[p]);
@@ -250,6 +251,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     points->kind[p] = f->kind;
     points->i[p] = f->i;
     points->j[p] = f->j;
+    points->near[p] = f->near;
     points->active[p] = 0;
     points->weight[p] = 0;
     brc_set(points->n[p], 0, 0, 0);
@@ -271,14 +273,16 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
         size_t p = first;
         while (p < first + kept && !is_same(points, p, &list->feature[k], merged))
             p++;
-        if (p == first + kept && next < first + n)
+        if (p < first + kept)
+            points->near[p] = list->feature[k].near;
+        else if (next < first + n)
             set_point(points, next++, &list->feature[k]);
     }
     c->np[row] = (int32_t)(next - first);
     return 0;
 }
 
-static int list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
+int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
 {
     struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
@@ -289,32 +293,19 @@ static int list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
     BRC_TRY(poly_list_features(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
                                LIST_SKIN * params->radius, &allowance));
     rows->wake[row] = sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] + allowance;
+    rows->room[row] = allowance;
     return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);
-}
-
-static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t row)
-{
-    const struct poly_rows *rows = c->model_columns;
-    return sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] >= rows->wake[row];
-}
-
-int poly_list_rows(struct brc_sim *sim, struct poly_state *st)
-{
-    for (size_t row = 0; row < sim->pairs.n; row++)
-        if (is_awake(sim, &sim->pairs, row))
-            BRC_TRY(list_row(sim, st, row));
-    return 0;
 }
 
 /* Vertices of the grain within the skin of the platen; the lowest of the others is the allowance.
  */
-static int list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
+int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
 {
     struct brc_contacts *c = &sim->platens;
     struct poly_rows *rows = c->model_columns;
     size_t a = (size_t)c->a[row], first = st->shapes.vertex_first[a];
     size_t n = st->shapes.vertex_first[a + 1] - first;
-    double radius = poly_params_of(sim)->radius, reach = (1 + LIST_SKIN) * radius;
+    double radius = poly_params_of(sim)->radius, reach = (1 + WALL_SKIN) * radius;
     double allowance = HUGE_VAL;
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
     st->list.n = 0;
@@ -330,12 +321,4 @@ static int list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
     }
     rows->wake[row] = sim->bodies.travel[a] + sim->bodies.travel[c->b[row]] + allowance;
     return replace_points(sim->ctx, c, row, &st->list, false);
-}
-
-int poly_list_walls(struct brc_sim *sim, struct poly_state *st)
-{
-    for (size_t row = 0; row < sim->platens.n; row++)
-        if (is_awake(sim, &sim->platens, row))
-            BRC_TRY(list_wall(sim, st, row));
-    return 0;
 }

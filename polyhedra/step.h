@@ -224,6 +224,35 @@ static inline void poly_store_k(struct brc_contacts *c, size_t row, const double
     c->k_version++;
 }
 
+/* True when the travel of a row's bodies calls for a new list. */
+static inline bool poly_is_awake(const struct brc_sim *sim, const struct brc_contacts *c,
+                                 size_t row)
+{
+    const struct poly_rows *rows = c->model_columns;
+    return sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] >= rows->wake[row];
+}
+
+/* Bound of the path that points of b have made in the frame of a in this step. Motions that both
+ * share, turns included, do not count; the last term is of second order in the turn. */
+static inline double poly_relative_path(const struct poly_motion *m, double reach_a, double reach_b)
+{
+    double u[3], w[3], turn2 = brc_norm2(m->wa) * m->dt * m->dt;
+    brc_cross(u, m->x, m->wa);
+    for (int k = 0; k < 3; k++) {
+        u[k] += m->vb[k] - m->va[k];
+        w[k] = m->wb[k] - m->wa[k];
+    }
+    return 1.1 * m->dt * (sqrt(brc_norm2(u)) + reach_b * sqrt(brc_norm2(w))) +
+           turn2 * (reach_a + 2 * reach_b);
+}
+
+/* A row without bond and listed features, which had no spring in the last step either: its forces
+ * and works are zero already. */
+static inline bool poly_is_idle(const struct brc_contacts *c, size_t row)
+{
+    return c->np[row] == 0 && c->status[row] != BRC_INTACT && c->k[row][0] == 0;
+}
+
 /* Work of the row's forces into the ledger. */
 static inline void poly_account(struct brc_ledger *ledger, const struct poly_rows *rows, size_t row,
                                 const struct poly_sums *s, const struct poly_wrench *bond,

@@ -70,10 +70,12 @@ void poly_walls(struct brc_sim *sim, void *state)
     const struct poly_params *p = poly_params_of(sim);
     struct brc_contacts *c = &sim->platens;
     bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
-    if (poly_list_walls(sim, st) != 0)
-        return;
     const struct poly_rows *rows = c->model_columns;
     for (size_t row = 0; row < c->n; row++) {
+        if (poly_is_awake(sim, c, row) && poly_list_wall(sim, st, row) != 0)
+            return;
+        if (poly_is_idle(c, row))
+            continue;
         struct poly_motion m;
         poly_start_motion(&m, sim, c->a[row], c->b[row]);
         struct poly_sums s = {.gap = rows->wake[row] - sim->bodies.travel[c->a[row]] -

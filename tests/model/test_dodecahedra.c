@@ -75,7 +75,7 @@ static void count_pair(struct count *c, const struct poly_pair *pair, enum poly_
         struct poly_touch t;
         struct poly_feature f = list->feature[k];
         uint8_t active = 0;
-        if (!poly_touch(&t, pair, f.kind, &f.i, &f.j, &active, rule))
+        if (!poly_touch(&t, pair, &f, poly_remembered(&f), &active, rule))
             continue;
         if (rule == POLY_STRICT) {
             c->vertex_face += f.kind != POLY_EDGES;

@@ -137,8 +137,11 @@ static void test_parallel_is_relative(void **state)
                                 {size, 0, 0},
                                 {-size, -1e-4 * size, 0.1 * size},
                                 {size, 1e-4 * size, 0.1 * size}};
+        struct poly_lines lines;
         struct poly_crossing x;
-        assert_true(poly_cross_edges(&x, e, 2 * size, e + 2, 2 * size));
+        assert_true(poly_cross_lines(&lines, e, 2 * size, e + 2, 2 * size));
+        assert_true(poly_feet_inside(&lines));
+        poly_cross_edges(&x, &lines, 2 * size, 2 * size);
         CHECK_NEAR(x.ta, size, 0, 1e-6);
         CHECK_NEAR(fabs(x.d), 0.1 * size, 0, 1e-12);
     }
@@ -161,7 +164,7 @@ static double pair_energy(const struct poly_pair *p, enum poly_rule rule, double
         struct poly_touch t;
         struct poly_feature feature = l.feature[k];
         uint8_t active = 0;
-        if (!poly_touch(&t, p, feature.kind, &feature.i, &feature.j, &active, rule))
+        if (!poly_touch(&t, p, &feature, poly_remembered(&feature), &active, rule))
             continue;
         double push[3], arm[3], moment[3];
         brc_scale(push, t.n, t.weight * t.delta);
@@ -336,8 +339,7 @@ static int coincident_count(enum poly_rule rule, double shift, double *weight)
     for (size_t k = 0; k < l.n; k++) {
         struct poly_touch t;
         uint8_t active = 0;
-        if (poly_touch(&t, &p, l.feature[k].kind, &l.feature[k].i, &l.feature[k].j, &active,
-                       rule)) {
+        if (poly_touch(&t, &p, &l.feature[k], poly_remembered(&l.feature[k]), &active, rule)) {
             count++;
             *weight += t.weight;
         }
@@ -405,7 +407,7 @@ static void test_lists_are_exact(void **state)
             struct poly_touch t;
             struct poly_feature x = all.feature[k];
             uint8_t active = 0;
-            if (!poly_touch(&t, &p, x.kind, &x.i, &x.j, &active, rule))
+            if (!poly_touch(&t, &p, &x, poly_remembered(&x), &active, rule))
                 continue;
             active_count++;
             bool listed = false;
