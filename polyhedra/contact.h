@@ -91,10 +91,11 @@ static inline double poly_foot_weight(double t, double length, double ell, doubl
 /* Weight of a crossing edge pair with inside feet, and the gradient parts g and c of its touch.
  * n points from edge a to edge b with gap d; see README.md for the derivation. */
 static inline void poly_crossing_weight(struct poly_touch *t, const struct poly_crossing *x,
-                                        double la, double lb, double ell, double d)
+                                        double ell, double d)
 {
     double da, db, dp;
-    double wa = poly_foot_weight(x->ta, la, ell, &da), wb = poly_foot_weight(x->tb, lb, ell, &db);
+    double wa = poly_foot_weight(x->ta, x->la, ell, &da),
+           wb = poly_foot_weight(x->tb, x->lb, ell, &db);
     double wp = poly_smooth(x->sin2 / POLY_SKEW, &dp);
     double by_a = da * wb * wp, by_b = wa * db * wp, by_angle = wa * wb * dp / POLY_SKEW;
     t->weight = wa * wb * wp;

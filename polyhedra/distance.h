@@ -94,13 +94,15 @@ static inline void poly_foot_point(struct poly_foot *r, const double p[3], const
 }
 
 /* Distance of p to a closed edge, whose closest point goes to x. */
-static inline double poly_to_edge(const struct poly_core *c, const struct poly_edge *e,
-                                  const double p[3], double x[3])
+static inline double poly_to_edge(const struct poly_core *c, int32_t edge, const double p[3],
+                                  double x[3])
 {
+    const struct poly_edge *e = &c->edge[edge];
+    const double *v0 = c->vertex[c->end[edge][0]];
     double r[3];
-    brc_sub(r, p, c->vertex[e->v[0]]);
+    brc_sub(r, p, v0);
     double t = fmin(fmax(brc_dot(r, e->dir), 0), e->length);
-    brc_copy(x, c->vertex[e->v[0]]);
+    brc_copy(x, v0);
     brc_axpy(x, t, e->dir);
     brc_sub(r, p, x);
     return brc_norm(r);
@@ -120,7 +122,7 @@ static inline void poly_foot_search(struct poly_foot *r, const struct poly_core 
         }
     }
     for (int32_t e = 0; e < c->n_edges; e++) {
-        double x[3], d = poly_to_edge(c, &c->edge[e], p, x);
+        double x[3], d = poly_to_edge(c, e, p, x);
         if (d < best) {
             best = d;
             poly_foot_point(r, p, x, c->face[c->edge[e].face[0]].n, poly_place(e, POLY_ON_EDGE));
@@ -133,19 +135,20 @@ static inline int32_t poly_walk_edge(struct poly_foot *r, const struct poly_core
                                      const double p[3])
 {
     const struct poly_edge *e = &c->edge[index];
+    const int32_t *end = c->end[index];
     double q[3], x[3];
-    brc_sub(q, p, c->vertex[e->v[0]]);
+    brc_sub(q, p, c->vertex[end[0]]);
     double t = brc_dot(q, e->dir);
     if (t <= 0)
-        return poly_place(e->v[0], POLY_ON_VERTEX);
+        return poly_place(end[0], POLY_ON_VERTEX);
     if (t >= e->length)
-        return poly_place(e->v[1], POLY_ON_VERTEX);
+        return poly_place(end[1], POLY_ON_VERTEX);
     for (int k = 0; k < 2; k++) {
         const struct poly_side *side = &c->side[e->side[k]];
         if (brc_dot(side->m, p) < side->off)
             return poly_place(e->face[k], POLY_ON_FACE);
     }
-    brc_copy(x, c->vertex[e->v[0]]);
+    brc_copy(x, c->vertex[end[0]]);
     brc_axpy(x, t, e->dir);
     poly_foot_point(r, p, x, c->face[e->face[0]].n, poly_place(index, POLY_ON_EDGE));
     return r->place;
@@ -158,11 +161,11 @@ static inline int32_t poly_walk_vertex(struct poly_foot *r, const struct poly_co
     int32_t next = -1;
     brc_sub(q, p, c->vertex[index]);
     for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
-        const struct poly_edge *e = &c->edge[c->star[k]];
-        double t = e->v[0] == index ? brc_dot(q, e->dir) : -brc_dot(q, e->dir);
+        int32_t e = c->star[k];
+        double t = brc_dot(q, c->edge[e].dir) * (c->end[e][0] == index ? 1 : -1);
         if (t > most) {
             most = t;
-            next = c->star[k];
+            next = e;
         }
     }
     if (next >= 0)
@@ -189,7 +192,7 @@ static inline int32_t poly_walk_face(struct poly_foot *r, const struct poly_core
     }
     int32_t out = poly_outside(c, &c->face[index], p);
     if (out >= 0)
-        return poly_place(c->side[out].edge, POLY_ON_EDGE);
+        return poly_place(c->link[out].edge, POLY_ON_EDGE);
     poly_foot_face(r, c, index, h);
     return r->place;
 }
@@ -238,7 +241,7 @@ static inline void poly_foot_closed(struct poly_foot *r, const struct poly_core 
     }
     double best = HUGE_VAL, nearest[3] = {0, 0, 0};
     for (int32_t k = f->first; k < f->first + f->n_sides; k++) {
-        double x[3], d = poly_to_edge(c, &c->edge[c->side[k].edge], p, x);
+        double x[3], d = poly_to_edge(c, c->link[k].edge, p, x);
         if (d < best) {
             best = d;
             brc_copy(nearest, x);
@@ -252,24 +255,26 @@ struct poly_lines {
     double a[3], b[3], r[3]; /* r = q0 - p0 */
     double m[3], m2;         /* a x b */
     double c;                /* a . b */
+    double la2, lb2;         /* squared lengths */
     double s, t;             /* feet of the common perpendicular, times m2 */
 };
 
 /* False when the edges are parallel (relative test). */
-static inline bool poly_cross_lines(struct poly_lines *x, const double p[2][3], double la,
-                                    const double q[2][3], double lb)
+static inline bool poly_cross_lines(struct poly_lines *x, const double p0[3], const double p1[3],
+                                    const double q0[3], const double q1[3])
 {
-    double la2 = la * la, lb2 = lb * lb;
-    brc_sub(x->a, p[1], p[0]);
-    brc_sub(x->b, q[1], q[0]);
-    brc_sub(x->r, q[0], p[0]);
+    brc_sub(x->a, p1, p0);
+    brc_sub(x->b, q1, q0);
+    brc_sub(x->r, q0, p0);
+    x->la2 = brc_norm2(x->a);
+    x->lb2 = brc_norm2(x->b);
     brc_cross(x->m, x->a, x->b);
     x->m2 = brc_norm2(x->m);
     x->c = brc_dot(x->a, x->b);
     double ra = brc_dot(x->r, x->a), rb = brc_dot(x->r, x->b);
-    x->s = ra * lb2 - x->c * rb;
-    x->t = x->c * ra - rb * la2;
-    return x->m2 > POLY_PARALLEL * la2 * lb2;
+    x->s = ra * x->lb2 - x->c * rb;
+    x->t = x->c * ra - rb * x->la2;
+    return x->m2 > POLY_PARALLEL * x->la2 * x->lb2;
 }
 
 /* True when both feet are strictly inside their edges. */
@@ -283,20 +288,22 @@ struct poly_crossing {
     double a[3], b[3]; /* unit directions */
     double c, sin2;    /* cosine, squared sine of the angle */
     double ta, tb;     /* m, feet along the edges */
+    double la, lb;     /* m, lengths */
     double cross[3];   /* unit a x b */
     double d;          /* m, from line a to line b along cross */
 };
 
-static inline void poly_cross_edges(struct poly_crossing *x, const struct poly_lines *l, double la,
-                                    double lb)
+static inline void poly_cross_edges(struct poly_crossing *x, const struct poly_lines *l)
 {
-    double per_a = 1 / la, per_b = 1 / lb, per_m = 1 / l->m2;
+    x->la = sqrt(l->la2);
+    x->lb = sqrt(l->lb2);
+    double per_a = 1 / x->la, per_b = 1 / x->lb, per_m = 1 / l->m2;
     brc_scale(x->a, l->a, per_a);
     brc_scale(x->b, l->b, per_b);
     x->c = l->c * per_a * per_b;
     x->sin2 = l->m2 * (per_a * per_a) * (per_b * per_b);
-    x->ta = l->s * per_m * la;
-    x->tb = l->t * per_m * lb;
+    x->ta = l->s * per_m * x->la;
+    x->tb = l->t * per_m * x->lb;
     brc_scale(x->cross, l->m, sqrt(per_m));
     x->d = brc_dot(l->r, x->cross);
 }
@@ -308,44 +315,44 @@ static inline double poly_clamp(double t, double high)
 
 /* Feet of the closest points of two closed edges (eq 1), in [0, 1]. Parallel edges: the middle of
  * the part where they face each other. */
-static inline void poly_closed_feet(const struct poly_lines *x, bool parallel, double la, double lb,
-                                    double *s, double *t)
+static inline void poly_closed_feet(const struct poly_lines *x, bool parallel, double *s, double *t)
 {
-    double la2 = la * la, lb2 = lb * lb, ra = brc_dot(x->r, x->a), rb = brc_dot(x->r, x->b);
+    double ra = brc_dot(x->r, x->a), rb = brc_dot(x->r, x->b);
     if (parallel) {
-        double low = ra / la2, high = low + (x->c > 0 ? lb / la : -lb / la);
+        double low = ra / x->la2, part = sqrt(x->lb2 / x->la2),
+               high = low + (x->c > 0 ? part : -part);
         double from = poly_clamp(fmin(low, high), 1), to = poly_clamp(fmax(low, high), 1);
         *s = (from + to) / 2;
         *t = poly_clamp((*s - low) / (high - low), 1);
         return;
     }
     *s = poly_clamp(x->s / x->m2, 1);
-    *t = (*s * x->c - rb) / lb2;
+    *t = (*s * x->c - rb) / x->lb2;
     if (*t < 0 || *t > 1) {
         *t = poly_clamp(*t, 1);
-        *s = poly_clamp((*t * x->c + ra) / la2, 1);
+        *s = poly_clamp((*t * x->c + ra) / x->la2, 1);
     }
 }
 
 /* Vector between the closest points of two closed edges (eq 1); returns its length. */
 static inline double poly_between_edges(double r[3], double *s, const struct poly_lines *x,
-                                        bool parallel, double la, double lb)
+                                        bool parallel)
 {
     double t;
-    poly_closed_feet(x, parallel, la, lb, s, &t);
+    poly_closed_feet(x, parallel, s, &t);
     for (int i = 0; i < 3; i++)
         r[i] = x->r[i] + t * x->b[i] - *s * x->a[i];
     return brc_norm(r); /* eq:gt12:1 */
 }
 
 /* Distance of two closed edges. */
-static inline double poly_edge_distance(const double p[2][3], double la, const double q[2][3],
-                                        double lb)
+static inline double poly_edge_distance(const double p0[3], const double p1[3], const double q0[3],
+                                        const double q1[3])
 {
     struct poly_lines x;
     double r[3], s;
-    bool parallel = !poly_cross_lines(&x, p, la, q, lb);
-    return poly_between_edges(r, &s, &x, parallel, la, lb);
+    bool parallel = !poly_cross_lines(&x, p0, p1, q0, q1);
+    return poly_between_edges(r, &s, &x, parallel);
 }
 
 #endif

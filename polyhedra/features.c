@@ -100,8 +100,8 @@ static void find_near(struct side *s, double reach)
         s->near_vertex[v] = highest < reach;
     }
     for (int32_t e = 0; e < s->own->n_edges; e++) {
-        const double *h0 = s->height + s->own->edge[e].v[0] * n_faces;
-        const double *h1 = s->height + s->own->edge[e].v[1] * n_faces;
+        const double *h0 = s->height + s->own->end[e][0] * n_faces;
+        const double *h1 = s->height + s->own->end[e][1] * n_faces;
         double highest = -HUGE_VAL;
         for (int32_t f = 0; f < n_faces; f++)
             highest = fmax(highest, fmin(h0[f], h1[f]));
@@ -216,18 +216,16 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
     for (int32_t i = 0; i < a->own->n_edges; i++) {
         if (!a->near_edge[i])
             continue;
-        const struct poly_edge *ea = &a->own->edge[i];
         double ends[4][3];
-        brc_copy(ends[0], a->v[ea->v[0]]);
-        brc_copy(ends[1], a->v[ea->v[1]]);
+        brc_copy(ends[0], a->v[a->own->end[i][0]]);
+        brc_copy(ends[1], a->v[a->own->end[i][1]]);
         for (int32_t j = 0; j < b->own->n_edges; j++) {
             if (!b->near_edge[j])
                 continue;
-            const struct poly_edge *eb = &b->own->edge[j];
-            const double length[2] = {ea->length, eb->length};
-            brc_copy(ends[2], b->v[eb->v[0]]);
-            brc_copy(ends[3], b->v[eb->v[1]]);
-            if (poly_edge_distance(ends, ea->length, ends + 2, eb->length) >= reach)
+            const double length[2] = {a->own->edge[i].length, b->own->edge[j].length};
+            brc_copy(ends[2], b->v[b->own->end[j][0]]);
+            brc_copy(ends[3], b->v[b->own->end[j][1]]);
+            if (poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) >= reach)
                 continue;
             if (rule != POLY_CLOSED && stays_outside(ends, length, turn, skin))
                 continue;

@@ -131,6 +131,25 @@ static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], co
     brc_cross(t->c, arm, t->g);
 }
 
+/* Vertex against the core by the rule `merged`, from the place where its foot was. */
+static inline bool poly_foot_on_core(struct poly_foot *foot, const struct poly_core *c,
+                                     int32_t *place, const double q[3], double rest)
+{
+    int32_t index = *place >> 2;
+    if ((*place & 3) == POLY_ON_FACE) {
+        double h = poly_height(&c->face[index], q);
+        if (h >= rest) /* a lower bound of the distance */
+            return false;
+        if (h >= 0 && poly_above(c, &c->face[index], q)) {
+            poly_foot_face(foot, c, index, h);
+            return true;
+        }
+    }
+    poly_foot_walk(foot, c, q, *place);
+    *place = foot->place;
+    return foot->s < rest;
+}
+
 /* Vertex v (in space) of one body against the core c of the other. *place is the face, or under
  * `merged` the remembered place, which is updated; near is the vertex of the other core that may
  * lower the weight. */
@@ -150,12 +169,7 @@ static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pai
         poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
         return true;
     }
-    /* the height above any plane is a lower bound of the distance */
-    if ((*place & 3) == POLY_ON_FACE && poly_height(&c->face[*place >> 2], q) >= p->rest)
-        return false;
-    poly_foot_walk(&foot, c, q, *place);
-    *place = foot.place;
-    if (foot.s >= p->rest)
+    if (!poly_foot_on_core(&foot, c, place, q, p->rest))
         return false;
     poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
     poly_weigh_vertex(t, v, of_b ? p->va : p->vb, c->n_vertices, near, sign, p);
@@ -165,15 +179,14 @@ static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pai
 /* Edges that cross with inside feet. The side on which they met stays in *active (1 or 2), so that
  * edges that have passed through each other are still pushed back. */
 static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_pair *p,
-                                       const struct poly_lines *lines, double la, double lb,
-                                       const double p0[3], uint8_t *active,
-                                       const enum poly_rule rule)
+                                       const struct poly_lines *lines, const double p0[3],
+                                       uint8_t *active, const enum poly_rule rule)
 {
     double rm = brc_dot(lines->r, lines->m);
     if (!poly_feet_inside(lines) || rm * rm >= p->rest * p->rest * lines->m2)
         return false;
     struct poly_crossing x;
-    poly_cross_edges(&x, lines, la, lb);
+    poly_cross_edges(&x, lines);
     bool flipped = *active == 0 ? x.d < 0 : *active == 2;
     double sign = flipped ? -1 : 1, d = sign * x.d;
     *active = flipped ? 2 : 1;
@@ -182,16 +195,16 @@ static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_p
     for (int k = 0; k < 3; k++)
         t->x[k] = p0[k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
     if (rule == POLY_MERGED)
-        poly_crossing_weight(t, &x, la, lb, p->ell, d);
+        poly_crossing_weight(t, &x, p->ell, d);
     return t->weight > 0;
 }
 
 /* Closed edges by eq 1, where a foot is at an end. */
 static inline bool poly_touch_closed_edges(struct poly_touch *t, const struct poly_pair *p,
-                                           const struct poly_lines *lines, bool parallel, double la,
-                                           double lb, const double p0[3])
+                                           const struct poly_lines *lines, bool parallel,
+                                           const double p0[3])
 {
-    double r[3], s, d = poly_between_edges(r, &s, lines, parallel, la, lb);
+    double r[3], s, d = poly_between_edges(r, &s, lines, parallel);
     if (d >= p->rest || d == 0)
         return false;
     brc_scale(t->n, r, 1 / d);
@@ -204,19 +217,13 @@ static inline bool poly_touch_closed_edges(struct poly_touch *t, const struct po
 static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair *p, int32_t i,
                                     int32_t j, uint8_t *active, const enum poly_rule rule)
 {
-    const struct poly_edge *ea = &p->a.edge[i], *eb = &p->b.edge[j];
+    const int32_t *ea = p->a.end[i], *eb = p->b.end[j];
+    const double *p0 = p->va[ea[0]];
     struct poly_lines lines;
-    double ends[4][3];
-    brc_copy(ends[0], p->va[ea->v[0]]);
-    brc_copy(ends[1], p->va[ea->v[1]]);
-    brc_copy(ends[2], p->vb[eb->v[0]]);
-    brc_copy(ends[3], p->vb[eb->v[1]]);
-    bool crossing = poly_cross_lines(&lines, ends, ea->length, ends + 2, eb->length);
-    if (crossing &&
-        poly_touch_crossing(t, p, &lines, ea->length, eb->length, ends[0], active, rule))
+    bool crossing = poly_cross_lines(&lines, p0, p->va[ea[1]], p->vb[eb[0]], p->vb[eb[1]]);
+    if (crossing && poly_touch_crossing(t, p, &lines, p0, active, rule))
         return true;
-    *active = rule == POLY_CLOSED &&
-              poly_touch_closed_edges(t, p, &lines, !crossing, ea->length, eb->length, ends[0]);
+    *active = rule == POLY_CLOSED && poly_touch_closed_edges(t, p, &lines, !crossing, p0);
     return *active;
 }
 

@@ -22,7 +22,7 @@ static void to_frame(double r[3], const double q[4], const double v[3])
 static double eroded_area(const struct poly_shapes *s, size_t body, int32_t facet)
 {
     int32_t f = poly_shapes_face_on(s, body, facet);
-    return f < 0 ? 0 : s->face[s->face_first[body] + (size_t)f].area;
+    return f < 0 ? 0 : s->origin[s->face_first[body] + (size_t)f].area;
 }
 
 /* Material points, normals and tangents of a row's bond in the frames of its bodies; n from a. */

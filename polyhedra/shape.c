@@ -15,9 +15,12 @@ void poly_shapes_free(struct poly_shapes *s)
     free(s->face_first);
     free(s->side_first);
     free(s->vertex);
+    free(s->end);
     free(s->edge);
     free(s->face);
+    free(s->origin);
     free(s->side);
+    free(s->link);
     free(s->star_first);
     free(s->star);
     memset(s, 0, sizeof *s);
@@ -64,8 +67,14 @@ static int reserve_features(struct brc_context *ctx, struct poly_shapes *s, size
     s->cap_vertices = cap;
     cap = s->cap_edges;
     BRC_TRY(reserve(ctx, &s->star, &cap, e, 2 * sizeof(int32_t)));
+    cap = s->cap_edges;
+    BRC_TRY(reserve(ctx, &s->end, &cap, e, sizeof *s->end));
     BRC_TRY(reserve(ctx, &s->edge, &s->cap_edges, e, sizeof *s->edge));
+    cap = s->cap_faces;
+    BRC_TRY(reserve(ctx, &s->origin, &cap, f, sizeof *s->origin));
     BRC_TRY(reserve(ctx, &s->face, &s->cap_faces, f, sizeof *s->face));
+    cap = s->cap_sides;
+    BRC_TRY(reserve(ctx, &s->link, &cap, d, sizeof *s->link));
     return reserve(ctx, &s->side, &s->cap_sides, d, sizeof *s->side);
 }
 
@@ -92,7 +101,9 @@ static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, siz
                       const double middle[3])
 {
     struct poly_face *face = s->face + s->face_first[s->n] + f;
+    struct poly_origin *origin = s->origin + s->face_first[s->n] + f;
     struct poly_side *side = s->side + s->side_first[s->n] + solid->first[f];
+    struct poly_link *link = s->link + s->side_first[s->n] + solid->first[f];
     size_t first = solid->first[f], n = solid->first[f + 1] - first;
     double area[3], mean[3], out[3];
     loop_area(solid, f, area, mean);
@@ -102,37 +113,37 @@ static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, siz
         brc_copy(face->n, solid->normal[f]);
     else
         brc_scale(face->n, area, (inward ? -1 : 1) / brc_norm(area));
-    face->area = fabs(brc_dot(area, face->n));
+    origin->area = fabs(brc_dot(area, face->n));
     face->d = brc_dot(face->n, mean);
     face->first = (int32_t)first;
     face->n_sides = (int32_t)n;
-    face->facet = solid->facet != NULL ? solid->facet[f] : -1;
+    origin->facet = solid->facet != NULL ? solid->facet[f] : -1;
     for (size_t k = 0; k < n; k++) {
-        side[k].v = solid->loop[first + (inward ? n - 1 - k : k)];
-        side[k].edge = -1;
+        link[k].v = solid->loop[first + (inward ? n - 1 - k : k)];
+        link[k].edge = -1;
     }
     for (size_t k = 0; k < n; k++) {
         double along[3];
-        brc_sub(along, solid->vertex[side[(k + 1) % n].v], solid->vertex[side[k].v]);
+        brc_sub(along, solid->vertex[link[(k + 1) % n].v], solid->vertex[link[k].v]);
         brc_cross(side[k].m, along, face->n);
         brc_normalise(side[k].m, side[k].m);
-        side[k].off = brc_dot(side[k].m, solid->vertex[side[k].v]);
+        side[k].off = brc_dot(side[k].m, solid->vertex[link[k].v]);
     }
 }
 
-static int32_t side_end(const struct poly_face *face, const struct poly_side *side, int32_t k)
+static int32_t side_end(const struct poly_face *face, const struct poly_link *link, int32_t k)
 {
     int32_t last = face->first + face->n_sides - 1;
-    return side[k == last ? face->first : k + 1].v;
+    return link[k == last ? face->first : k + 1].v;
 }
 
 /* The side of another face that runs from v1 to v0, or -1. */
-static int32_t find_twin(const struct poly_face *face, size_t n_faces, const struct poly_side *side,
+static int32_t find_twin(const struct poly_face *face, size_t n_faces, const struct poly_link *link,
                          int32_t v0, int32_t v1)
 {
     for (size_t f = 0; f < n_faces; f++)
         for (int32_t k = face[f].first; k < face[f].first + face[f].n_sides; k++)
-            if (side[k].v == v1 && side_end(&face[f], side, k) == v0)
+            if (link[k].v == v1 && side_end(&face[f], link, k) == v0)
                 return k;
     return -1;
 }
@@ -149,23 +160,24 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
                       const struct poly_solid *solid)
 {
     struct poly_face *face = s->face + s->face_first[s->n];
-    struct poly_side *side = s->side + s->side_first[s->n];
+    struct poly_link *link = s->link + s->side_first[s->n];
+    int32_t(*end)[2] = s->end + s->edge_first[s->n];
     struct poly_edge *edge = s->edge + s->edge_first[s->n];
     int32_t n_sides = (int32_t)solid->first[solid->n_faces], n_edges = 0;
     for (int32_t k = 0; k < n_sides; k++) {
-        if (side[k].edge >= 0)
+        if (link[k].edge >= 0)
             continue;
         int32_t f = face_of_side(face, k);
-        int32_t v0 = side[k].v, v1 = side_end(&face[f], side, k);
-        int32_t twin = find_twin(face, solid->n_faces, side, v0, v1);
-        if (twin < 0 || side[twin].edge >= 0 || n_edges >= n_sides / 2)
+        int32_t v0 = link[k].v, v1 = side_end(&face[f], link, k);
+        int32_t twin = find_twin(face, solid->n_faces, link, v0, v1);
+        if (twin < 0 || link[twin].edge >= 0 || n_edges >= n_sides / 2)
             BRC_FAIL(
                 ctx, BRC_ERR_GEOMETRY,
                 "body %zu: edge %d-%d does not join exactly two faces: not a closed polyhedron",
                 s->n, v0, v1);
         struct poly_edge *e = edge + n_edges;
-        e->v[0] = v0;
-        e->v[1] = v1;
+        end[n_edges][0] = v0;
+        end[n_edges][1] = v1;
         e->side[0] = k;
         e->side[1] = twin;
         e->face[0] = f;
@@ -174,7 +186,7 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
         e->length = brc_normalise(e->dir, e->dir);
         if (!(e->length > 0))
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "body %zu: edge %d-%d has no length", s->n, v0, v1);
-        side[k].edge = side[twin].edge = n_edges++;
+        link[k].edge = link[twin].edge = n_edges++;
     }
     s->edge_first[s->n + 1] = s->edge_first[s->n] + (size_t)n_edges;
     return 0;
@@ -183,14 +195,14 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
 static void fill_star(struct poly_shapes *s, size_t n_vertices)
 {
     size_t n_edges = s->edge_first[s->n + 1] - s->edge_first[s->n];
-    const struct poly_edge *edge = s->edge + s->edge_first[s->n];
+    const int32_t(*end)[2] = (const int32_t(*)[2])(s->end + s->edge_first[s->n]);
     int32_t *first = s->star_first + s->vertex_first[s->n] + s->n;
     int32_t *star = s->star + 2 * s->edge_first[s->n];
     int32_t n = 0;
     for (size_t v = 0; v < n_vertices; v++) {
         first[v] = n;
         for (size_t e = 0; e < n_edges; e++)
-            if (edge[e].v[0] == (int32_t)v || edge[e].v[1] == (int32_t)v)
+            if (end[e][0] == (int32_t)v || end[e][1] == (int32_t)v)
                 star[n++] = (int32_t)e;
     }
     first[n_vertices] = n;
@@ -222,7 +234,7 @@ int32_t poly_shapes_face_on(const struct poly_shapes *s, size_t body, int32_t fa
 {
     struct poly_core c = poly_core_of(s, body);
     for (int32_t f = 0; f < c.n_faces; f++)
-        if (c.face[f].facet == facet)
+        if (c.origin[f].facet == facet)
             return f;
     return -1;
 }

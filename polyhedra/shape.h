@@ -7,26 +7,35 @@
 
 #include "common/error.h"
 
-/* A directed side of a face: from vertex v to the next side's v. A point whose foot on the face's
- * plane is inside the side has m . x < off. */
+/* What every step reads is kept apart from what only lists and walks read: it must stay in cache.
+ */
+
+/* A directed side of a face: a point whose foot on the face's plane is inside it has m . x < off.
+ */
 struct poly_side {
     double m[3]; /* unit, in the plane of the face, outward */
     double off;
+};
+
+/* The side begins at vertex v (and ends where the next one begins). */
+struct poly_link {
     int32_t v, edge;
 };
 
 struct poly_face {
-    double n[3]; /* unit, outward */
-    double d;    /* plane n . x = d */
-    double area;
+    double n[3];            /* unit, outward */
+    double d;               /* plane n . x = d */
     int32_t first, n_sides; /* range of sides */
-    int32_t facet;          /* facet of the specimen, -1 when there is none */
+};
+
+struct poly_origin {
+    double area;   /* of the face */
+    int32_t facet; /* of the specimen, -1 when there is none */
 };
 
 struct poly_edge {
-    double dir[3]; /* unit, from v[0] to v[1] */
+    double dir[3]; /* unit, from the first end to the second */
     double length;
-    int32_t v[2];
     int32_t side[2]; /* the sides of the two faces that meet */
     int32_t face[2];
 };
@@ -34,11 +43,14 @@ struct poly_edge {
 /* One core, as seen by the distance functions. */
 struct poly_core {
     const double (*vertex)[3];
+    const int32_t (*end)[2]; /* vertices of each edge */
     const struct poly_edge *edge;
     const struct poly_face *face;
+    const struct poly_origin *origin; /* of each face */
     const struct poly_side *side;
-    const int32_t *star_first; /* [n_vertices + 1] range in star */
-    const int32_t *star;       /* edges at a vertex */
+    const struct poly_link *link; /* of each side */
+    const int32_t *star_first;    /* [n_vertices + 1] range in star */
+    const int32_t *star;          /* edges at a vertex */
     int32_t n_vertices, n_edges, n_faces;
 };
 
@@ -47,9 +59,12 @@ struct poly_shapes {
     size_t n, cap;
     size_t *vertex_first, *edge_first, *face_first, *side_first; /* [n + 1] */
     double (*vertex)[3];
+    int32_t (*end)[2];
     struct poly_edge *edge;
     struct poly_face *face;
+    struct poly_origin *origin;
     struct poly_side *side;
+    struct poly_link *link;
     int32_t *star_first; /* vertices of a body plus one, from vertex_first + body */
     int32_t *star;       /* from 2 edge_first */
     size_t cap_vertices, cap_edges, cap_faces, cap_sides;
@@ -83,9 +98,12 @@ static inline struct poly_core poly_core_of(const struct poly_shapes *s, size_t 
 {
     size_t v = s->vertex_first[body], e = s->edge_first[body], f = s->face_first[body];
     struct poly_core c = {(const double(*)[3])(s->vertex + v),
+                          (const int32_t(*)[2])(s->end + e),
                           s->edge + e,
                           s->face + f,
+                          s->origin + f,
                           s->side + s->side_first[body],
+                          s->link + s->side_first[body],
                           s->star_first + v + body,
                           s->star + 2 * e,
                           (int32_t)(s->vertex_first[body + 1] - v),

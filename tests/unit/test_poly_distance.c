@@ -88,13 +88,6 @@ static void random_edges(double e[4][3], unsigned *seed)
             e[i][k] = solid_uniform(seed) - 0.5;
 }
 
-static double edge_length(double e[2][3])
-{
-    double d[3];
-    brc_sub(d, e[1], e[0]);
-    return brc_norm(d);
-}
-
 static double sampled_distance(double e[4][3])
 {
     enum { N = 100 };
@@ -121,8 +114,7 @@ static void test_edges_against_sampling(void **state)
         if (trial % 4 == 0) /* parallel, either sense */
             for (int k = 0; k < 3; k++)
                 e[3][k] = e[2][k] + (trial % 8 ? 0.7 : -1.3) * (e[1][k] - e[0][k]);
-        double la = edge_length(e), lb = edge_length(e + 2);
-        double d = poly_edge_distance(e, la, e + 2, lb), sampled = sampled_distance(e);
+        double d = poly_edge_distance(e[0], e[1], e[2], e[3]), sampled = sampled_distance(e);
         assert_true(d <= sampled + 1e-12);
         CHECK_NEAR(d, sampled, 0.01, 0);
     }
@@ -139,9 +131,9 @@ static void test_parallel_is_relative(void **state)
                                 {size, 1e-4 * size, 0.1 * size}};
         struct poly_lines lines;
         struct poly_crossing x;
-        assert_true(poly_cross_lines(&lines, e, 2 * size, e + 2, 2 * size));
+        assert_true(poly_cross_lines(&lines, e[0], e[1], e[2], e[3]));
         assert_true(poly_feet_inside(&lines));
-        poly_cross_edges(&x, &lines, 2 * size, 2 * size);
+        poly_cross_edges(&x, &lines);
         CHECK_NEAR(x.ta, size, 0, 1e-6);
         CHECK_NEAR(fabs(x.d), 0.1 * size, 0, 1e-12);
     }

@@ -18,7 +18,7 @@ static void test_box(void **state)
     assert_int_equal(c.n_faces, 6);
     double area = 0, length = 0;
     for (int32_t f = 0; f < c.n_faces; f++) {
-        area += c.face[f].area;
+        area += c.origin[f].area;
         assert_int_equal(c.face[f].n_sides, 4);
         CHECK_NEAR(c.face[f].d, fabs(brc_dot(c.face[f].n, half)), 1e-14, 0);
     }
@@ -40,15 +40,18 @@ static void check_core(const struct poly_core *c)
             assert_true(poly_height(&c->face[f], c->vertex[v]) < 1e-12);
     for (int32_t f = 0; f < c->n_faces; f++)
         for (int32_t k = c->face[f].first; k < c->face[f].first + c->face[f].n_sides; k++) {
-            const struct poly_edge *e = &c->edge[c->side[k].edge];
-            CHECK_NEAR(poly_height(&c->face[f], c->vertex[c->side[k].v]), 0, 1e-12, 0);
-            CHECK_NEAR(brc_dot(c->side[k].m, c->vertex[e->v[0]]), c->side[k].off, 1e-12, 0);
-            CHECK_NEAR(brc_dot(c->side[k].m, c->vertex[e->v[1]]), c->side[k].off, 1e-12, 0);
+            int32_t index = c->link[k].edge;
+            const struct poly_edge *e = &c->edge[index];
+            CHECK_NEAR(poly_height(&c->face[f], c->vertex[c->link[k].v]), 0, 1e-12, 0);
+            CHECK_NEAR(brc_dot(c->side[k].m, c->vertex[c->end[index][0]]), c->side[k].off, 1e-12,
+                       0);
+            CHECK_NEAR(brc_dot(c->side[k].m, c->vertex[c->end[index][1]]), c->side[k].off, 1e-12,
+                       0);
             CHECK_NEAR(brc_dot(c->side[k].m, c->face[f].n), 0, 1e-12, 0);
             assert_true(e->side[0] == k || e->side[1] == k);
             assert_true(e->face[0] == f || e->face[1] == f);
             for (int32_t other = c->face[f].first; other < k; other++)
-                assert_true(brc_dot(c->side[k].m, c->vertex[c->side[other].v]) <
+                assert_true(brc_dot(c->side[k].m, c->vertex[c->link[other].v]) <
                             c->side[k].off + 1e-12);
         }
 }
@@ -66,7 +69,7 @@ static void test_random_cores(void **state)
         check_core(&c);
         for (int32_t v = 0; v < c.n_vertices; v++)
             for (int32_t k = c.star_first[v]; k < c.star_first[v + 1]; k++)
-                assert_true(c.edge[c.star[k]].v[0] == v || c.edge[c.star[k]].v[1] == v);
+                assert_true(c.end[c.star[k]][0] == v || c.end[c.star[k]][1] == v);
         assert_int_equal(c.star_first[c.n_vertices], 2 * c.n_edges);
     }
     poly_shapes_free(&s);
