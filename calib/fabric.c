@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adds half of the area that each inner face keeps when the cell's planes move in by r. */
-static int add_eroded_areas(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
-                            double r, struct brc_convex *work, double *area)
+/* Area that each of the cell's faces keeps when its planes move in by r; first side: the low cell.
+ */
+static int erode_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell, double r,
+                      struct brc_convex *work, double (*area)[2])
 {
     size_t n = f->cell_first[cell + 1] - f->cell_first[cell];
     struct brc_plane *planes = brc_alloc(ctx, n, sizeof *planes);
@@ -22,18 +23,18 @@ static int add_eroded_areas(struct brc_context *ctx, const struct brc_facets *f,
         code = brc_convex_from_planes(ctx, work, planes, n, f->centre[cell], 2 * reach);
     for (size_t i = 0; code == 0 && i < work->n_faces; i++) {
         double centroid[3];
-        if (work->plane[i].id >= 0)
-            area[work->plane[i].id] +=
-                0.5 * brc_polygon_area(work->vertex, work->loop + work->first[i],
-                                       work->first[i + 1] - work->first[i], work->plane[i].n,
-                                       centroid);
+        int32_t facet = work->plane[i].id;
+        if (facet >= 0)
+            area[facet][f->cell[facet][0] != (int32_t)cell] =
+                brc_polygon_area(work->vertex, work->loop + work->first[i],
+                                 work->first[i + 1] - work->first[i], work->plane[i].n, centroid);
     }
     free(planes);
     return code;
 }
 
-/* Areas that bonds have: those of the facets, or of the eroded faces; a face that erosion removes
- * on either side has none. */
+/* Areas that bonds have: those of the facets, or the mean of the eroded faces; a face that erosion
+ * removes on either side has none. */
 static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
                       const struct calib_fabric_rules *rules, double *area)
 {
@@ -42,11 +43,16 @@ static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
     memcpy(area, f->area, f->n_facets * sizeof *area);
     if (!rules->is_eroded)
         return 0;
-    memset(area, 0, f->n_facets * sizeof *area);
+    double(*side)[2] = brc_alloc(ctx, f->n_facets, sizeof *side);
+    if (!side)
+        return BRC_ERR_MEMORY;
     brc_convex_init(&work);
     for (size_t c = 0; c < f->n_cells && code == 0; c++)
-        code = add_eroded_areas(ctx, f, c, rules->rounding, &work, area);
+        code = erode_cell(ctx, f, c, rules->rounding, &work, side);
+    for (size_t i = 0; i < f->n_facets; i++)
+        area[i] = side[i][0] > 0 && side[i][1] > 0 ? 0.5 * (side[i][0] + side[i][1]) : 0;
     brc_convex_free(&work);
+    free(side);
     return code;
 }
 
@@ -121,6 +127,7 @@ int calib_fabric_measure(struct brc_context *ctx, const struct brc_facets *facet
     BRC_TRY(code);
     if (out->n_contacts == 0 || n_bonds == 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "first guess: no facet of the specimen is a contact");
+    out->volume = centres3 / 3;
     out->mean_distance /= (double)out->n_contacts;
     out->coverage /= volume3;
     out->bond /= centres3;

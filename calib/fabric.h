@@ -18,6 +18,7 @@ struct calib_fabric_rules {
  * that they represent, without the layer at the boundary. */
 struct calib_fabric {
     size_t n_inner, n_contacts;
+    double volume;        /* m3, represented by the inner facets: V */
     double mean_distance; /* m, of the contacts' seeds */
     double coverage;      /* 1: part of sum A d that the contacts carry */
     double bond;    /* 1: sum A_bond d^2 / L: a bond modulus times this is a stiffness in Pa */

@@ -37,7 +37,7 @@ int calib_moduli_invert(struct brc_context *ctx, double e, double nu,
          "polyhedra: normal stiffness of bonds over that of collisions")                     \
     REAL(bond_share, "1", "0.5", "(0, 1)",                                                   \
          "polyhedra: bonds' part of the shear stiffness of closed facets")                   \
-    REAL(features, "1", "1", "(0, 20]", "polyhedra: feature pairs that act, per facet corner")
+    REAL(features, "1", "0.5", "(0, 20]", "polyhedra: feature pairs that act, per facet corner")
 
 struct calib_guess_params {
     BRC_PARAM_MEMBERS(CALIB_GUESS_PARAMS)
