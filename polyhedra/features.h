@@ -177,7 +177,7 @@ static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pai
 }
 
 /* Edges that cross with inside feet. The side on which they met stays in *active (1 or 2), so that
- * edges that have passed through each other are still pushed back. */
+ * edges that have passed through each other are still pushed back; 0 and 3 know no side. */
 static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_pair *p,
                                        const struct poly_lines *lines, const double p0[3],
                                        uint8_t *active, const enum poly_rule rule)
@@ -187,7 +187,7 @@ static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_p
         return false;
     struct poly_crossing x;
     poly_cross_edges(&x, lines);
-    bool flipped = *active == 0 ? x.d < 0 : *active == 2;
+    bool has_side = *active == 1 || *active == 2, flipped = has_side ? *active == 2 : x.d < 0;
     double sign = flipped ? -1 : 1, d = sign * x.d;
     *active = flipped ? 2 : 1;
     brc_scale(t->n, x.cross, sign);   /* eq:gt12:3 */
@@ -223,8 +223,9 @@ static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair
     bool crossing = poly_cross_lines(&lines, p0, p->va[ea[1]], p->vb[eb[0]], p->vb[eb[1]]);
     if (crossing && poly_touch_crossing(t, p, &lines, p0, active, rule))
         return true;
-    *active = rule == POLY_CLOSED && poly_touch_closed_edges(t, p, &lines, !crossing, p0);
-    return *active;
+    bool touches = rule == POLY_CLOSED && poly_touch_closed_edges(t, p, &lines, !crossing, p0);
+    *active = touches ? 3 : 0;
+    return touches;
 }
 
 /* How a listed feature pair touches now; *active is its side (0 when apart), and the remembered
