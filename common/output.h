@@ -6,14 +6,14 @@
 #include "fields.h"
 #include "params.h"
 
-#define BRC_OUTPUT_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                        \
-    FLAG(plots, "on", "curves and pictures of cracks by gnuplot, where it is installed")     \
-    REAL(facet_part, "1", "0.5", "(0, 1]",                                                   \
-         "pictures: a facet is drawn when at least this part of its area is broken")         \
-    REAL(opening, "m", "0 m", "[0, inf)",                                                    \
-         "pictures: only facets whose two sides have moved apart or along by at least this") \
-    CHOICE(view, "auto|side|top", "auto",                                                    \
-           "pictures: from the side, or along z; auto: by the test")                         \
+#define BRC_OUTPUT_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                       \
+    FLAG(plots, "on", "curves and pictures of cracks by gnuplot, where it is installed")    \
+    REAL(facet_part, "1", "0.5", "(0, 1]",                                                  \
+         "pictures: a facet is drawn when at least this part of its area is broken")        \
+    REAL(opening, "1", "0", "[0, 100]",                                                     \
+         "pictures: only cracks that have opened or slipped by this many times their mean") \
+    CHOICE(view, "auto|side|top", "auto",                                                   \
+           "pictures: from the side, or along z; auto: by the test")                        \
     INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")
 
 enum brc_view { BRC_VIEW_AUTO, BRC_VIEW_SIDE, BRC_VIEW_TOP };

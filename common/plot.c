@@ -118,11 +118,11 @@ static struct view choose_view(const struct brc_output_params *output, enum brc_
     return v;
 }
 
-/* The mode of each facet that is drawn as broken, -1 for the others; area by mode is summed. */
+/* Broken facets: their mode (-1: not drawn), how many there are and how many are drawn. */
 struct cracks {
     int8_t *mode; /* [n_facets] */
-    size_t n[BRC_N_MODES];
-    double area[BRC_N_MODES]; /* m2 */
+    size_t n_broken[BRC_N_MODES], n_drawn[BRC_N_MODES];
+    double area[BRC_N_MODES]; /* m2, broken */
 };
 
 /* Where the point of a body that was at p at the start is now, less p. */
@@ -151,6 +151,42 @@ static double facet_opening(const struct brc_sim *sim, size_t facet)
     return brc_norm(high);
 }
 
+/* The mode with most of the broken area, -1 while less than the part of the facet is broken. */
+static int8_t facet_mode(const double area[BRC_N_MODES], double least)
+{
+    double sum = 0;
+    int most = 0;
+    for (int m = 0; m < BRC_N_MODES; m++) {
+        sum += area[m];
+        most = area[m] > area[most] ? m : most;
+    }
+    return (int8_t)(sum > 0 && sum >= least * (1 - 1e-9) ? most : -1);
+}
+
+/* Takes back the facets that have opened less than the given multiple of the mean. */
+static void drop_closed(const struct brc_sim *sim, double multiple, struct cracks *c)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double sum = 0;
+    size_t n = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (c->mode[i] >= 0) {
+            sum += facet_opening(sim, i);
+            n++;
+        }
+    for (size_t i = 0; i < f->n_facets; i++) {
+        int mode = c->mode[i];
+        if (mode < 0)
+            continue;
+        c->n_broken[mode]++;
+        c->area[mode] += f->area[i];
+        if (facet_opening(sim, i) * (double)n >= multiple * sum)
+            c->n_drawn[mode]++;
+        else
+            c->mode[i] = -1;
+    }
+}
+
 static int classify(struct brc_context *ctx, const struct brc_sim *sim,
                     const struct brc_output_params *output, struct cracks *c)
 {
@@ -166,21 +202,9 @@ static int classify(struct brc_context *ctx, const struct brc_sim *sim,
     for (size_t k = 0; k < e->table.n; k++)
         if (e->facet[k] >= 0 && (size_t)e->facet[k] < f->n_facets)
             area[e->facet[k]][e->mode[k]] += e->area[k];
-    for (size_t i = 0; i < f->n_facets; i++) {
-        double sum = 0;
-        int most = 0;
-        for (int m = 0; m < BRC_N_MODES; m++) {
-            sum += area[i][m];
-            most = area[i][m] > area[i][most] ? m : most;
-        }
-        bool is_broken = sum > 0 && sum >= output->facet_part * f->area[i] * (1 - 1e-9);
-        bool is_drawn = is_broken && facet_opening(sim, i) >= output->opening;
-        c->mode[i] = (int8_t)(is_drawn ? most : -1);
-        if (is_drawn) {
-            c->n[most]++;
-            c->area[most] += f->area[i];
-        }
-    }
+    for (size_t i = 0; i < f->n_facets; i++)
+        c->mode[i] = facet_mode(area[i], output->facet_part * f->area[i]);
+    drop_closed(sim, output->opening, c);
     free(area);
     return 0;
 }
@@ -317,7 +341,7 @@ static void put_axes(FILE *out, const struct brc_convex *domain, const struct vi
             fprintf(out, "unset %ctics\nunset %clabel\n", "xyz"[k], "xyz"[k]);
     }
     fputs(side ? "set zlabel rotate parallel offset 2,0\n"
-               : "set xlabel offset 0,1\nset ylabel offset -5,0\n",
+               : "set xlabel offset 0,1\nset ylabel offset -2,0\n",
           out);
     fprintf(out, "set view %g,%g,%.4g*panel_scale\nset view equal xyz\nset xyplane relative 0\n",
             v->tilt, v->turn, fit_scale(v, extent));
@@ -326,12 +350,16 @@ static void put_axes(FILE *out, const struct brc_convex *domain, const struct vi
 /* Lines under the picture; cracks.gp says where the panel is. */
 static void put_legend(FILE *out, const struct cracks *c)
 {
-    for (int mode = 0; mode < BRC_N_MODES; mode++)
+    for (int mode = 0; mode < BRC_N_MODES; mode++) {
+        char drawn[32] = "";
+        if (c->n_drawn[mode] < c->n_broken[mode])
+            snprintf(drawn, sizeof drawn, ", %zu drawn", c->n_drawn[mode]);
         fprintf(out,
-                "set label %d '%s: %zu facets, %.3g cm^2' at screen panel_left, screen %.3f left "
+                "set label %d '%s: %zu facets, %.3g cm^2%s' at screen panel_left, screen %.3f left "
                 "offset 1.5,0 point pt 5 ps 2 lc rgb '#%06x'\n",
-                mode + 1, brc_mode_name((enum brc_mode)mode), c->n[mode], 1e4 * c->area[mode],
-                0.08 - 0.028 * mode, mode_colour(mode, N_SHADES - 1));
+                mode + 1, brc_mode_name((enum brc_mode)mode), c->n_broken[mode],
+                1e4 * c->area[mode], drawn, 0.08 - 0.028 * mode, mode_colour(mode, N_SHADES - 1));
+    }
 }
 
 static void put_splot(FILE *out, bool used[BRC_N_MODES][N_SHADES])
@@ -481,7 +509,7 @@ static int write_pictures(struct brc_context *ctx, const char *dir,
     fputs("\n", out);
     for (int i = 0; i < runs->n; i++) {
         fprintf(out, "panel_left = %.4f\nset origin %.4f,0.11\nset size %.4f,%.4f\nset label 9 ",
-                (i + 0.3) / runs->n, (double)i / runs->n, 1.0 / runs->n, PANEL_HEIGHT);
+                (i + 0.24) / runs->n, (double)i / runs->n, 1.0 / runs->n, PANEL_HEIGHT);
         put_quoted(out, runs->label[i]);
         fprintf(out, " at screen %.4f,0.935 center font ',%d'\nload ", (i + 0.5) / runs->n,
                 height / 60);

@@ -73,15 +73,21 @@ static void test_majority(void **state)
     CHECK_OK(&f->ctx, brc_plot_cracks(&f->ctx, dir, &f->sim, &output));
     char *text = read_file(dir, "cracks.plot");
     assert_non_null(strstr(text, "torsion: 1 facets, 1 cm^2"));
-    assert_non_null(strstr(text, "shear: 1 facets, 1 cm^2"));
+    assert_non_null(strstr(text, "shear: 1 facets, 1 cm^2'"));
     assert_non_null(strstr(text, "tension: 0 facets, 0 cm^2"));
     assert_non_null(strstr(text, "$outline << end_of_data\n"));
     free(text);
-    /* nothing has moved, so no crack has opened */
-    output.opening = 1e-9;
+    /* the sides of the second have moved apart twice as far as those of the first */
+    const struct brc_facets *t = &f->specimen.facets;
+    int32_t one = t->cell[inner(f, 0)][0], other = t->cell[inner(f, 0)][1];
+    assert_int_equal(t->cell[inner(f, 1)][0], one);
+    f->sim.bodies.x[other][0] += 1e-4;
+    f->sim.bodies.x[t->cell[inner(f, 1)][1]][2] += 2e-4;
+    output.opening = 1;
     CHECK_OK(&f->ctx, brc_plot_cracks(&f->ctx, dir, &f->sim, &output));
     text = read_file(dir, "cracks.plot");
-    assert_non_null(strstr(text, "torsion: 0 facets"));
+    assert_non_null(strstr(text, "torsion: 1 facets, 1 cm^2, 0 drawn"));
+    assert_non_null(strstr(text, "shear: 1 facets, 1 cm^2'"));
     free(text);
     remove_folder(dir);
 }
