@@ -21,8 +21,10 @@ enum {
 static const double STEP = 0.2, FRICTION = 0.3;
 /* At rest: mean unbalanced force over mean contact force. The packing gives places only, and 1e-3
  * moves them by less than a thousandth of a radius at six times the cost. */
-static const double REST = 1e-2;
+static const double REST = 1e-2, LAST_REST = 1e-5;
 static const double SKIN = 0.3; /* of the mean radius */
+/* Overlap, in mean radii, that counts as none: a loose packing rests when only such are left. */
+static const double LOOSE = 1e-3;
 
 struct packing {
     const struct brc_convex *domain;
@@ -30,7 +32,7 @@ struct packing {
     double (*x)[3], (*v)[3], (*f)[3], (*listed)[3];
     double *radius;  /* full */
     double *present; /* at this stage of growth */
-    double skin;
+    double mean_radius, skin;
     struct brc_candidates near;
     int32_t (*near_wall)[2]; /* sphere and plane of the domain */
     size_t n_near_wall, cap_near_wall;
@@ -108,7 +110,9 @@ static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
         }
     }
     for (size_t i = 0; i < p->n; i++) {
-        double d = s->diameter_min + (s->diameter_max - s->diameter_min) * gsl_rng_uniform(rng);
+        /* one diameter from each of n equal classes: the solid fraction hits its mark */
+        double rank = ((double)i + gsl_rng_uniform(rng)) / (double)p->n;
+        double d = s->diameter_min + (s->diameter_max - s->diameter_min) * rank;
         p->radius[i] = d / 2;
         int tries = 0;
         do
@@ -191,7 +195,7 @@ static void repel(struct packing *p)
     p->contact = touching > 0 ? sum / (double)touching : 0;
 }
 
-/* One damped step; returns mean unbalanced force over mean contact force. */
+/* One damped step; ratio is the mean unbalanced force over the mean contact force. */
 static int relax(struct brc_context *ctx, struct packing *p, double *ratio)
 {
     double unbalanced = 0;
@@ -203,26 +207,39 @@ static int relax(struct brc_context *ctx, struct packing *p, double *ratio)
         brc_axpy(p->v[i], STEP, p->f[i]);
         brc_axpy(p->x[i], STEP, p->v[i]);
     }
-    *ratio = p->contact > 0 ? unbalanced / (double)p->n / p->contact : 0;
+    *ratio = unbalanced / (double)p->n / fmax(p->contact, LOOSE * p->mean_radius);
     return 0;
 }
 
-static int grow(struct brc_context *ctx, struct packing *p)
+/* The first sphere whose centre is not in its own Laguerre cell (another's power there is lower), n
+ * when there is none. Such a centre lies inside the other sphere, so near pairs are all to test. */
+static size_t find_swallowed(const struct packing *p)
 {
-    double ratio = 1;
-    for (int step = 0; step < GROWTH_STEPS; step++) {
-        double part = 0.5 + 0.5 * (step + 1) / GROWTH_STEPS;
-        for (size_t i = 0; i < p->n; i++)
-            p->present[i] = part * p->radius[i];
-        BRC_TRY(relax(ctx, p, &ratio));
+    for (size_t k = 0; k < p->near.n; k++) {
+        int32_t a = p->near.pair[k][0], b = p->near.pair[k][1];
+        double d[3], square = p->radius[a] * p->radius[a] - p->radius[b] * p->radius[b];
+        brc_sub(d, p->x[b], p->x[a]);
+        if (brc_norm2(d) <= fabs(square))
+            return (size_t)(square > 0 ? b : a);
     }
-    for (int step = 0; step < MAX_RELAX_STEPS && ratio > REST; step++)
-        BRC_TRY(relax(ctx, p, &ratio));
+    return p->n;
+}
+
+static int check_packing(struct brc_context *ctx, const struct packing *p, double ratio)
+{
+    size_t swallowed = find_swallowed(p);
     if (ratio > REST)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                  "the packing does not come to rest in %d steps (unbalanced ratio %g); try another "
                  "specimen.seed or a smaller specimen.solid_fraction",
                  MAX_RELAX_STEPS, ratio);
+    if (swallowed < p->n)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "sphere %zu of radius %g m at (%g, %g, %g) m has its centre in the cell of a "
+                 "larger one; use a narrower range of diameters or a smaller "
+                 "specimen.solid_fraction",
+                 swallowed, p->radius[swallowed], p->x[swallowed][0], p->x[swallowed][1],
+                 p->x[swallowed][2]);
     for (size_t i = 0; i < p->n; i++)
         if (!is_inside(p->domain, p->x[i], 0))
             BRC_FAIL(
@@ -232,13 +249,34 @@ static int grow(struct brc_context *ctx, struct packing *p)
     return 0;
 }
 
+/* Grows the spheres and relaxes them until they rest, and longer while a cell lacks its centre. */
+static int grow(struct brc_context *ctx, struct packing *p)
+{
+    double ratio = 1, rest = REST;
+    for (int step = 0; step < GROWTH_STEPS; step++) {
+        double part = 0.5 + 0.5 * (step + 1) / GROWTH_STEPS;
+        for (size_t i = 0; i < p->n; i++)
+            p->present[i] = part * p->radius[i];
+        BRC_TRY(relax(ctx, p, &ratio));
+    }
+    for (int step = 0; step < MAX_RELAX_STEPS && rest >= LAST_REST; step++) {
+        if (ratio <= rest && find_swallowed(p) == p->n)
+            break;
+        if (ratio <= rest)
+            rest /= 10;
+        BRC_TRY(relax(ctx, p, &ratio));
+    }
+    return check_packing(ctx, p, ratio);
+}
+
 int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *s,
                       const struct brc_convex *domain, double domain_volume, struct brc_seeds *out)
 {
     struct packing p = {.domain = domain};
     BRC_TRY(choose_count(ctx, s, domain_volume, &p.n));
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    p.skin = SKIN * 0.25 * (s->diameter_min + s->diameter_max);
+    p.mean_radius = 0.25 * (s->diameter_min + s->diameter_max);
+    p.skin = SKIN * p.mean_radius;
     *out = (struct brc_seeds){.n = p.n};
     p.x = out->x = brc_alloc(ctx, p.n, sizeof *out->x);
     p.radius = out->radius = brc_alloc(ctx, p.n, sizeof *out->radius);

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 /* raise when the packing's rules change */
-enum { CACHE_VERSION = 1, PATH_SIZE = 1024 };
+enum { CACHE_VERSION = 2, PATH_SIZE = 1024 };
 static const char MAGIC[8] = "brcpack";
 
 struct header {

@@ -2,6 +2,7 @@
 #include "seeds.h"
 
 #include <gsl/gsl_rng.h>
+#include <math.h>
 #include <stdlib.h>
 
 void brc_seeds_free(struct brc_seeds *s)
@@ -20,6 +21,12 @@ int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
     if (count > 1e7)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.cells gives %g seeds, at most 1e7 are allowed",
                  count);
+    double edge = p->size[0] / cells[0];
+    for (int k = 1; k < 3; k++)
+        if (fabs(p->size[k] / cells[k] - edge) > 1e-6 * edge)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "specimen.size / specimen.cells is %g x %g x %g m; the cells must be cubes",
+                     edge, p->size[1] / cells[1], p->size[2] / cells[2]);
     out->n = (size_t)count;
     out->x = brc_alloc(ctx, out->n, sizeof *out->x);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);

@@ -19,7 +19,8 @@ const struct brc_param_list brc_specimen_param_list =
 
 enum { MAX_FILE_PLANES = 1000 };
 
-/* Prism of n sides with the area of the circle; the normal of side k is at 90 deg + k 360/n. */
+/* Prism of n sides with the area of the circle, or for gt12's mesh inscribed in it; the normal of
+ * side k is at 90 deg + k 360/n. */
 static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_params *p,
                          struct brc_convex *domain)
 {
@@ -30,7 +31,9 @@ static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_para
     struct brc_plane *plane = brc_alloc(ctx, (size_t)n + 2, sizeof *plane);
     if (!plane)
         return BRC_ERR_MEMORY;
-    double apothem = p->diameter / 2 * sqrt(BRC_PI / (n * tan(BRC_PI / n)));
+    bool is_inscribed = p->grains == BRC_GRAINS_MESH;
+    double apothem =
+        p->diameter / 2 * (is_inscribed ? cos(BRC_PI / n) : sqrt(BRC_PI / (n * tan(BRC_PI / n))));
     plane[0] = (struct brc_plane){{0, 0, -1}, 0, 0};
     plane[1] = (struct brc_plane){{0, 0, 1}, p->height, 1};
     for (int k = 0; k < n; k++) {
@@ -228,12 +231,6 @@ int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_param
         double centroid[3], inertia[3][3];
         brc_convex_mass(&out->domain, &out->domain_volume, centroid, inertia);
         code = tessellate(ctx, out);
-    }
-    if (code == 0 && params->grains == BRC_GRAINS_MESH) {
-        /* the mesh fills its own polygon, which is inscribed in the circle */
-        out->domain_volume = 0;
-        for (size_t c = 0; c < out->facets.n_cells; c++)
-            out->domain_volume += out->facets.volume[c];
     }
     if (code == 0)
         measure(out);

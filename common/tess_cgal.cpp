@@ -21,7 +21,10 @@ extern "C" {
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <map>
 #include <new>
@@ -94,8 +97,9 @@ class Area_criteria
     double max_area;
 };
 
-/* Guards stand far around the region, so that all cells of seeds are bounded. */
-constexpr int32_t guard = -1;
+/* Guards stand far around the region, so that all cells of seeds are bounded. They have the infos
+ * -8 to -1. */
+constexpr int32_t n_guards = 8;
 
 double weight_of(const Point &)
 {
@@ -168,13 +172,13 @@ void power_centre(const double p[4][3], const double w[4], Number x[3], Number &
     shape = product;
 }
 
-template <class Cell> void cell_centre(const Cell &cell, double x[3])
+template <class Vertex> void cell_centre(const std::array<Vertex, 4> &corner, double x[3])
 {
     /* below this sine, long double may lose more than the last digits of a double */
     constexpr long double flat = 1e-3L;
     double p[4][3], w[4];
-    for (int i = 0; i < 4; i++) {
-        const auto &q = cell->vertex(i)->point();
+    for (size_t i = 0; i < 4; i++) {
+        const auto &q = corner[i]->point();
         p[i][0] = q.x();
         p[i][1] = q.y();
         p[i][2] = q.z();
@@ -193,33 +197,76 @@ template <class Cell> void cell_centre(const Cell &cell, double x[3])
         x[k] = p[0][k] + CGAL::to_double(exact[k]) / CGAL::to_double(exact_det);
 }
 
+/* CGAL's own order of cells and edges follows addresses in memory. Sorted by the seeds' numbers,
+ * equal seeds give equal bits. */
+template <class Triangulation> struct Sorted {
+    using Vertex = typename Triangulation::Vertex_handle;
+    struct Cell {
+        std::array<Vertex, 4> corner;
+        typename Triangulation::Cell_handle handle;
+    };
+    struct Edge {
+        int32_t low, high; /* high < 0: a guard */
+        typename Triangulation::Edge edge;
+    };
+    std::vector<Cell> cells;
+    std::vector<Edge> edges;
+
+    explicit Sorted(const Triangulation &t);
+};
+
+template <class Triangulation> Sorted<Triangulation>::Sorted(const Triangulation &t)
+{
+    auto by_info = [](Vertex a, Vertex b) { return a->info() < b->info(); };
+    cells.reserve(t.number_of_finite_cells());
+    for (auto c = t.finite_cells_begin(); c != t.finite_cells_end(); ++c) {
+        Cell cell = {{c->vertex(0), c->vertex(1), c->vertex(2), c->vertex(3)}, c};
+        std::sort(cell.corner.begin(), cell.corner.end(), by_info);
+        cells.push_back(cell);
+    }
+    std::sort(cells.begin(), cells.end(), [by_info](const Cell &a, const Cell &b) {
+        return std::lexicographical_compare(a.corner.begin(), a.corner.end(), b.corner.begin(),
+                                            b.corner.end(), by_info);
+    });
+    edges.reserve(t.number_of_finite_edges());
+    for (auto e = t.finite_edges_begin(); e != t.finite_edges_end(); ++e) {
+        typename Triangulation::Edge edge = *e;
+        int32_t a = edge.first->vertex(edge.second)->info();
+        int32_t b = edge.first->vertex(edge.third)->info();
+        if (b >= 0 && (a < 0 || a > b)) {
+            std::swap(a, b);
+            std::swap(edge.second, edge.third);
+        }
+        if (a >= 0)
+            edges.push_back({a, b, edge});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge &a, const Edge &b) {
+        return std::make_pair(a.low, a.high) < std::make_pair(b.low, b.high);
+    });
+}
+
 /* The facet across the edge between two seeds: the cells around the edge, in turn. */
 template <class Triangulation>
-int add_facet(brc_context *ctx, const Triangulation &t, typename Triangulation::Edge edge,
-              double (*seed)[3], std::vector<int32_t> &loop, brc_complex *out)
+int add_facet(brc_context *ctx, const Triangulation &t,
+              const typename Sorted<Triangulation>::Edge &e, double (*seed)[3],
+              std::vector<int32_t> &loop, brc_complex *out)
 {
-    int32_t a = edge.first->vertex(edge.second)->info();
-    int32_t b = edge.first->vertex(edge.third)->info();
-    if (a == guard && b == guard)
-        return 0;
-    if (b != guard && (a == guard || a > b)) {
-        std::swap(a, b);
-        std::swap(edge.second, edge.third);
-    }
     loop.clear();
-    auto start = t.incident_cells(edge), at = start;
+    auto start = t.incident_cells(e.edge), at = start;
     do
         loop.push_back(at->info());
     while (++at != start);
-    brc_complex_facet facet = {{a, b},
-                               b == guard ? BRC_FACE_OPEN : BRC_FACE_INNER,
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    bool is_open = e.high < 0;
+    brc_complex_facet facet = {{e.low, is_open ? -1 : e.high},
+                               is_open ? BRC_FACE_OPEN : BRC_FACE_INNER,
                                static_cast<int32_t>(loop.size()),
                                0,
                                {0, 0, 0}};
-    if (b != guard) {
+    if (!is_open) {
         double d[3], length;
         for (int k = 0; k < 3; k++)
-            d[k] = seed[b][k] - seed[a][k];
+            d[k] = seed[e.high][k] - seed[e.low][k];
         length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         for (int k = 0; k < 3; k++)
             facet.normal[k] = d[k] / length;
@@ -228,18 +275,19 @@ int add_facet(brc_context *ctx, const Triangulation &t, typename Triangulation::
 }
 
 template <class Triangulation>
-int copy_cells(brc_context *ctx, Triangulation &t, double (*seed)[3], brc_complex *out)
+int copy_cells(brc_context *ctx, const Triangulation &t, double (*seed)[3], brc_complex *out)
 {
+    Sorted<Triangulation> sorted(t);
     int32_t n = 0;
-    for (auto c = t.finite_cells_begin(); c != t.finite_cells_end(); ++c) {
+    for (const auto &cell : sorted.cells) {
         double x[3];
-        cell_centre(c, x);
+        cell_centre(cell.corner, x);
         BRC_TRY(brc_complex_add_vertex(ctx, out, x));
-        c->info() = n++;
+        cell.handle->info() = n++;
     }
     std::vector<int32_t> loop;
-    for (auto e = t.finite_edges_begin(); e != t.finite_edges_end(); ++e)
-        BRC_TRY(add_facet(ctx, t, *e, seed, loop, out));
+    for (const auto &edge : sorted.edges)
+        BRC_TRY(add_facet(ctx, t, edge, seed, loop, out));
     return 0;
 }
 
@@ -258,12 +306,12 @@ int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t
     /* far enough that inside the region every seed is nearer, whatever the weights */
     double far = 8 * std::sqrt(half_width * half_width + high - low);
     std::vector<std::pair<Vertex, int32_t>> points;
-    points.reserve(n + 8);
-    for (int k = 0; k < 8; k++)
+    points.reserve(n + n_guards);
+    for (int32_t k = 0; k < n_guards; k++)
         points.emplace_back(make_point(t, centre[0] + (k & 1 ? far : -far),
                                        centre[1] + (k & 2 ? far : -far),
                                        centre[2] + (k & 4 ? far : -far), low),
-                            guard);
+                            k - n_guards);
     for (size_t i = 0; i < n; i++)
         points.emplace_back(
             make_point(t, seed[i][0], seed[i][1], seed[i][2], radius ? radius[i] * radius[i] : 0),
@@ -272,11 +320,11 @@ int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t
     for (size_t i = 0; i < n; i++)
         hider[i] = 0;
     for (auto v = t.finite_vertices_begin(); v != t.finite_vertices_end(); ++v)
-        if (v->info() != guard)
+        if (v->info() >= 0)
             hider[v->info()] = -1;
     for (size_t i = 0; i < n; i++)
         if (hider[i] == 0)
-            hider[i] = nearest(t, points[i + 8].first);
+            hider[i] = nearest(t, points[i + n_guards].first);
     return copy_cells(ctx, t, seed, out);
 }
 

@@ -92,7 +92,8 @@ static int add_wall(struct brc_context *ctx, struct disc *d, size_t t, int k)
         int side = (int)lround(angle / (2 * BRC_PI) * d->n_sides);
         side = (side % d->n_sides + d->n_sides) % d->n_sides;
         facet.face = FACE_SIDE + side;
-        brc_set(facet.normal, cos(side_angle(d, side)), sin(side_angle(d, side)), 0);
+        double tilt = 2 * BRC_PI * side / d->n_sides;
+        brc_set(facet.normal, -sin(tilt), cos(tilt), 0);
     }
     return brc_complex_add_facet(ctx, &d->complex, &facet, loop);
 }
