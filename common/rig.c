@@ -20,6 +20,8 @@ static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_
 /* Adaptive loading: the rate follows the unbalanced force with this gain a step. It falls faster
  * than it grows, so that a burst of breaks is met at once. */
 static const double GAIN_DOWN = 0.02, GAIN_UP = 0.002;
+/* seconds (steps) to strain_max at the automatic rate */
+static const double FIRST_STEPS = 1e5;
 enum { UNBALANCED_STEPS = 10 }; /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
@@ -68,6 +70,8 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
 {
     struct brc_rig *rig = &sim->rig;
     rig->params = *test;
+    if (test->rate == 0)
+        rig->params.rate = test->strain_max / FIRST_STEPS;
     rig->n_platens = brc_rig_platens(test);
     rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
     rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;
@@ -85,12 +89,12 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     }
     if (rig->n_platens == 0)
         return 0;
-    rig->rate = test->rate;
+    rig->rate = rig->params.rate;
     set_platen_velocities(sim);
     double middle = 0.5 * (low[rig->axis] + high[rig->axis]);
     for (size_t i = 0; i < sim->bodies.n_grains; i++)
         sim->bodies.v[i][rig->axis] =
-            -rig->sense * test->rate * (sim->bodies.x[i][rig->axis] - middle);
+            -rig->sense * rig->rate * (sim->bodies.x[i][rig->axis] - middle);
     return 0;
 }
 

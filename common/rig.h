@@ -10,27 +10,27 @@ enum brc_test { BRC_TEST_COMPRESSION, BRC_TEST_TENSION, BRC_TEST_BRAZILIAN, BRC_
 enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
 enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
 
-#define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                \
-    CHOICE(kind, "compression|tension|brazilian|none", "compression",                              \
-           "compression and tension along z, Brazilian along y; none: no platens")                 \
-    CHOICE(loading, "adaptive|fixed", "adaptive",                                                  \
-           "adaptive: the rate follows the unbalanced force; fixed: at rate")                      \
-    REAL(rate, "1/s", "1e-7 1/s", "(0, inf)",                                                      \
-         "fixed loading: strain rate; adaptive: first and smallest one; in the quasi-static regime one step " \
-         "is one second")                                                                          \
-    REAL(target, "1", "0.003", "(0, 1)", "adaptive: unbalanced-force ratio to hold")                \
-    REAL(rate_max, "1/s", "1e-5 1/s", "(0, inf)", "adaptive: largest strain rate")                 \
-    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain")                \
-    REAL(stop_drop, "1", "0.5", "[0, 1)",                                                          \
-         "the test ends when the load has fallen to this part of "                                 \
-         "its peak; 0: never")                                                                     \
-    REAL(friction, "1", "0", "[0, 10]", "friction coefficient of the platens")                     \
-    CHOICE(grip, "axial|full", "axial",                                                            \
-           "tension: platens hold only the axial motion of the end grains, or all of it")          \
-    REAL(gauge, "1", "0.6", "(0, 1]", "middle part of the specimen where strain is measured")      \
-    REAL(plate_width, "m", "0 m", "[0, inf)", "Brazilian: width of the plates; 0: unlimited")      \
-    REAL(modulus_low, "1", "0.02", "[0, 1)", "moduli: least squares from this part of the peak")    \
-    REAL(modulus_high, "1", "0.1", "(0, 1]", "moduli: up to this part of the peak")                \
+#define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                              \
+    CHOICE(kind, "compression|tension|brazilian|none", "compression",                            \
+           "compression and tension along z, Brazilian along y; none: no platens")               \
+    CHOICE(loading, "adaptive|fixed", "adaptive",                                                \
+           "adaptive: the rate follows the unbalanced force; fixed: at rate")                    \
+    REAL(rate, "1/s", "0 1/s", "[0, inf)",                                                       \
+         "fixed loading: strain rate; adaptive: first and smallest one; 0: strain_max / 1e5 a "  \
+         "second; in the quasi-static regime one step is one second")                            \
+    REAL(target, "1", "0.003", "(0, 1)", "adaptive: unbalanced-force ratio to hold")             \
+    REAL(rate_max, "1/s", "1e-5 1/s", "(0, inf)", "adaptive: largest strain rate")               \
+    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain")              \
+    REAL(stop_drop, "1", "0.5", "[0, 1)",                                                        \
+         "the test ends when the load has fallen to this part of "                               \
+         "its peak; 0: never")                                                                   \
+    REAL(friction, "1", "0", "[0, 10]", "friction coefficient of the platens")                   \
+    CHOICE(grip, "axial|full", "axial",                                                          \
+           "tension: platens hold only the axial motion of the end grains, or all of it")        \
+    REAL(gauge, "1", "0.6", "(0, 1]", "middle part of the specimen where strain is measured")    \
+    REAL(plate_width, "m", "0 m", "[0, inf)", "Brazilian: width of the plates; 0: unlimited")    \
+    REAL(modulus_low, "1", "0.05", "[0, 1)", "moduli: least squares from this part of the peak") \
+    REAL(modulus_high, "1", "0.15", "(0, 1]", "moduli: up to this part of the peak")             \
     INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")
 
 struct brc_test_params {
@@ -38,8 +38,8 @@ struct brc_test_params {
 };
 extern const struct brc_param_list brc_test_param_list;
 
-/* A rigid plane. Its body moves; n is fixed. Points count only within half_width of the body's x
- * along the direction `across` (infinite: HUGE_VAL). */
+/* A rigid plane. Its body moves; n is fixed. Points count only within half_width of the
+ * body's x along the direction `across` (infinite: HUGE_VAL). */
 struct brc_platen {
     int32_t body;
     double n[3];      /* unit, into the specimen */
@@ -77,15 +77,17 @@ enum { BRC_MAX_RESULTS = 24 };
 
 /* Number of platens of a test. */
 int brc_rig_platens(const struct brc_test_params *test);
-/* Places the platen bodies at the specimen's ends and gives them and the grains the velocity field
- * of a uniform strain at the starting rate. Called once, when bodies have their places. */
+/* Places the platen bodies at the specimen's ends and gives them and the grains the
+ * velocity field of a uniform strain at the starting rate. Called once, when bodies have
+ * their places. */
 int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test);
 void brc_rig_free(struct brc_sim *sim);
 /* After the forces of a step: platen forces, boundary work, strain, loading rate. */
 int brc_rig_step(struct brc_sim *sim);
 /* At the end of a step: a row of the curve every sample_steps. */
 int brc_rig_sample(struct brc_sim *sim);
-/* The test has reached its end: strain_max, or the load has fallen to stop_drop of its peak. */
+/* The test has reached its end: strain_max, or the load has fallen to stop_drop of its
+ * peak. */
 bool brc_rig_done(const struct brc_sim *sim);
 /* The values measured so far; returns how many. docs/measures.md says how. */
 int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS]);
