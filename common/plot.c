@@ -318,7 +318,7 @@ static double fit_scale(const struct view *v, const double extent[3])
     double deep = extent[0] * sin(b) + extent[1] * cos(b);
     double high = extent[2] * sin(a) + deep * cos(a);
     double unit = base / fmax(extent[0], extent[1]);
-    return fmin(0.9 * PANEL_HEIGHT / (high * unit), 0.74 * PANEL_WIDTH / (wide * unit));
+    return fmin(0.9 * PANEL_HEIGHT / (high * unit), 0.70 * PANEL_WIDTH / (wide * unit));
 }
 
 /* Ranges and view; only the axes that the view shows at length have tics. */
@@ -341,7 +341,7 @@ static void put_axes(FILE *out, const struct brc_convex *domain, const struct vi
             fprintf(out, "unset %ctics\nunset %clabel\n", "xyz"[k], "xyz"[k]);
     }
     fputs(side ? "set zlabel rotate parallel offset 2,0\n"
-               : "set xlabel offset 0,1\nset ylabel offset -2,0\n",
+               : "set xlabel offset 0,1\nset ylabel offset -3.7,0\n",
           out);
     fprintf(out, "set view %g,%g,%.4g*panel_scale\nset view equal xyz\nset xyplane relative 0\n",
             v->tilt, v->turn, fit_scale(v, extent));
