@@ -65,6 +65,34 @@ static int read_failed(const struct h5_file *f, const char *what)
              f->path, what);
 }
 
+/* Properties of a new object of the class: no time stamps, so that equal states give equal files.
+ */
+static hid_t without_times(hid_t class)
+{
+    hid_t how = H5Pcreate(class);
+    H5Pset_obj_track_times(how, false);
+    return how;
+}
+
+static hid_t create_group(hid_t where, const char *path)
+{
+    hid_t how = without_times(H5P_GROUP_CREATE);
+    hid_t group = H5Gcreate2(where, path, H5P_DEFAULT, how, H5P_DEFAULT);
+    H5Pclose(how);
+    return group;
+}
+
+/* A new file of the format of HDF5 1.10, the structures of which carry checksums. */
+static hid_t create_file(const char *path)
+{
+    hid_t how = without_times(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+    hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, how, access);
+    H5Pclose(access);
+    H5Pclose(how);
+    return id;
+}
+
 /* ---- texts --------------------------------------------------------------------------------- */
 
 /* A type of fixed-length text; closed by the caller. */
@@ -88,7 +116,9 @@ static int write_text(const struct h5_file *f, hid_t where, bool is_attribute, c
             H5Aclose(id);
         }
     } else {
-        id = H5Dcreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+        hid_t how = without_times(H5P_DATASET_CREATE);
+        id = H5Dcreate2(where, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
+        H5Pclose(how);
         if (id >= 0) {
             status = H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
             H5Dclose(id);
@@ -139,13 +169,12 @@ static void copy_rows(const struct brc_state_part *part, int field, char *buffer
     }
 }
 
-/* New dataset of the right shape, without time stamps so that equal runs give equal files. */
+/* New dataset of the right shape. */
 static hid_t create_dataset(hid_t group, const struct brc_field *field, size_t rows)
 {
     hsize_t extent[2] = {rows, (hsize_t)field->width};
     hid_t space = H5Screate_simple(2, extent, NULL);
-    hid_t how = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_obj_track_times(how, false);
+    hid_t how = without_times(H5P_DATASET_CREATE);
     hid_t id = H5Dcreate2(group, field->name, file_type(field->type), space, H5P_DEFAULT, how,
                           H5P_DEFAULT);
     H5Pclose(how);
@@ -209,7 +238,7 @@ static int read_rows(const struct h5_file *f, const char *path, size_t *n)
 /* The group and all its BRC_STATE fields; an empty part makes its group, too. */
 static int write_part(const struct h5_file *f, const struct brc_state_part *part)
 {
-    hid_t group = H5Gcreate2(f->id, part->path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t group = create_group(f->id, part->path);
     if (group < 0)
         return write_failed(f, part->path);
     int code = write_rows(f, group, part->n);
@@ -269,9 +298,16 @@ static int read_part(const struct h5_file *f, struct brc_state_part *part)
         BRC_FAIL(f->ctx, BRC_ERR_INPUT,
                  "%s has %zu rows of %s, the case makes %zu; resume with the case that made it",
                  f->path, rows, part->path, part->n);
+    part->n = rows;
+    for (int i = 0; i < part->set.n; i++) { /* before any memory is taken for it */
+        hid_t id;
+        if (!is_saved(&part->set.fields[i]))
+            continue;
+        BRC_TRY(open_field(f, part, &part->set.fields[i], &id));
+        H5Dclose(id);
+    }
     if (!part->is_fixed)
         BRC_TRY(brc_table_resize(f->ctx, part->table, rows));
-    part->n = rows;
     for (int i = 0; i < part->set.n; i++)
         if (is_saved(&part->set.fields[i]))
             BRC_TRY(read_field(f, part, i));
@@ -303,7 +339,7 @@ static int write_provenance(const struct h5_file *f, const struct brc_sim *sim,
                             const struct brc_h5_extra *extra)
 {
     char hash[17], format[16];
-    hid_t group = H5Gcreate2(f->id, "provenance", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t group = create_group(f->id, "provenance");
     if (group < 0)
         return write_failed(f, "provenance");
     hash_text(sim, hash);
@@ -365,7 +401,7 @@ int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
     BRC_TRY(brc_contacts_compact(ctx, &sim->pairs));
     BRC_TRY(brc_contacts_compact(ctx, &sim->platens));
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    struct h5_file f = {ctx, path, H5Fcreate(temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)};
+    struct h5_file f = {ctx, path, create_file(temporary)};
     if (f.id < 0)
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "cannot create %s: is the folder there, writable and not full, and does no other "
