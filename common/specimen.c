@@ -63,7 +63,7 @@ static int read_planes(struct brc_context *ctx, const char *path, struct brc_pla
     while (code == 0 && fgets(line, sizeof line, file)) {
         struct brc_plane p = {.id = (int32_t)*n};
         char *at = line;
-        double value[4];
+        double value[4] = {0};
         int k = 0;
         number++;
         line[strcspn(line, "#\n")] = '\0';
