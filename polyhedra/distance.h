@@ -93,17 +93,24 @@ static inline void poly_foot_point(struct poly_foot *r, const double p[3], const
     r->place = place;
 }
 
+/* Foot of p on the line of an edge, in parts of it from its first end; along is the whole edge. */
+static inline double poly_along_edge(const struct poly_core *c, int32_t edge, const double p[3],
+                                     double along[3])
+{
+    const double *v0 = c->vertex[c->end[edge][0]];
+    double r[3];
+    brc_sub(along, c->vertex[c->end[edge][1]], v0);
+    brc_sub(r, p, v0);
+    return brc_dot(r, along) / brc_norm2(along);
+}
+
 /* Distance of p to a closed edge, whose closest point goes to x. */
 static inline double poly_to_edge(const struct poly_core *c, int32_t edge, const double p[3],
                                   double x[3])
 {
-    const struct poly_edge *e = &c->edge[edge];
-    const double *v0 = c->vertex[c->end[edge][0]];
-    double r[3];
-    brc_sub(r, p, v0);
-    double t = fmin(fmax(brc_dot(r, e->dir), 0), e->length);
-    brc_copy(x, v0);
-    brc_axpy(x, t, e->dir);
+    double along[3], r[3], t = poly_along_edge(c, edge, p, along);
+    brc_copy(x, c->vertex[c->end[edge][0]]);
+    brc_axpy(x, fmin(fmax(t, 0), 1), along);
     brc_sub(r, p, x);
     return brc_norm(r);
 }
@@ -135,21 +142,18 @@ static inline int32_t poly_walk_edge(struct poly_foot *r, const struct poly_core
                                      const double p[3])
 {
     const struct poly_edge *e = &c->edge[index];
-    const int32_t *end = c->end[index];
-    double q[3], x[3];
-    brc_sub(q, p, c->vertex[end[0]]);
-    double t = brc_dot(q, e->dir);
+    double along[3], x[3], t = poly_along_edge(c, index, p, along);
     if (t <= 0)
-        return poly_place(end[0], POLY_ON_VERTEX);
-    if (t >= e->length)
-        return poly_place(end[1], POLY_ON_VERTEX);
+        return poly_place(c->end[index][0], POLY_ON_VERTEX);
+    if (t >= 1)
+        return poly_place(c->end[index][1], POLY_ON_VERTEX);
     for (int k = 0; k < 2; k++) {
         const struct poly_side *side = &c->side[e->side[k]];
         if (brc_dot(side->m, p) < side->off)
             return poly_place(e->face[k], POLY_ON_FACE);
     }
-    brc_copy(x, c->vertex[end[0]]);
-    brc_axpy(x, t, e->dir);
+    brc_copy(x, c->vertex[c->end[index][0]]);
+    brc_axpy(x, t, along);
     poly_foot_point(r, p, x, c->face[e->face[0]].n, poly_place(index, POLY_ON_EDGE));
     return r->place;
 }
@@ -162,7 +166,9 @@ static inline int32_t poly_walk_vertex(struct poly_foot *r, const struct poly_co
     brc_sub(q, p, c->vertex[index]);
     for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
         int32_t e = c->star[k];
-        double t = brc_dot(q, c->edge[e].dir) * (c->end[e][0] == index ? 1 : -1);
+        double along[3];
+        brc_sub(along, c->vertex[c->end[e][0] + c->end[e][1] - index], c->vertex[index]);
+        double t = brc_dot(q, along);
         if (t > most) {
             most = t;
             next = e;

@@ -59,9 +59,10 @@ int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct pol
 
 /* Vertex v of the own core and a face or place of the other. */
 static int add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, int32_t v,
-                      int32_t place, int32_t near)
+                      int32_t place, int32_t near, double gap)
 {
-    struct poly_feature f = {.i = of_b ? place : v,
+    struct poly_feature f = {.free = gap,
+                             .i = of_b ? place : v,
                              .j = of_b ? v : place,
                              .near = near,
                              .kind = of_b ? POLY_VERTEX_B : POLY_VERTEX_A};
@@ -111,7 +112,7 @@ static void find_near(struct side *s, double reach)
 
 /* Faces of the other core within reach of a vertex; all of them when it is inside. */
 static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct side *s, bool of_b,
-                      int32_t v, double reach)
+                      int32_t v, double rest, double reach)
 {
     double q[3], highest;
     poly_to_body(q, s->r, s->x, s->v[v]);
@@ -122,7 +123,8 @@ static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct
             continue;
         poly_foot_closed(&foot, s->other, f, q);
         if (foot.s < reach || highest <= 0)
-            BRC_TRY(add_vertex(ctx, l, of_b, v, f, POLY_NONE_NEAR));
+            BRC_TRY(
+                add_vertex(ctx, l, of_b, v, f, POLY_NONE_NEAR, highest <= 0 ? 0 : foot.s - rest));
     }
     return 0;
 }
@@ -150,7 +152,7 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
         if (!s->near_vertex[v])
             continue;
         if (rule != POLY_MERGED) {
-            BRC_TRY(list_faces(ctx, l, s, of_b, v, reach));
+            BRC_TRY(list_faces(ctx, l, s, of_b, v, p->rest, reach));
             continue;
         }
         double q[3], h;
@@ -158,26 +160,29 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
         poly_to_body(q, s->r, s->x, s->v[v]);
         poly_foot_walk(&foot, s->other, q, poly_place(poly_highest(s->other, q, &h), POLY_ON_FACE));
         if (foot.s < reach)
-            BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near_vertex(s->other, q, range)));
+            BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near_vertex(s->other, q, range),
+                               foot.s - p->rest));
     }
     return 0;
 }
 
-/* Distance of a point to an edge. */
-static double point_to_edge(const double x[3], const double e[2][3], const double dir[3],
-                            double length)
+/* Distance of a point to an edge with the unit direction dir. */
+static double point_to_edge(const double x[3], const double e[2][3], const double dir[3])
 {
-    double r[3];
+    double r[3], along[3];
     brc_sub(r, x, e[0]);
-    brc_axpy(r, -poly_clamp(brc_dot(r, dir), length), dir);
+    brc_sub(along, e[1], e[0]);
+    brc_axpy(r, -poly_clamp(brc_dot(r, dir), brc_dot(along, dir)), dir);
     return brc_norm(r);
 }
 
-/* How far the end at `end` of edge p stands beyond the plane of line q and the common
- * perpendicular: positive when the foot on p is outside that end. A relative motion by skin, with
- * turns of at most `turn`, changes it by less than *change. */
-static double overhang(const double p[2][3], const double q[2][3], double lq, int end, double turn,
-                       double skin, double *change)
+/* The foot on edge p of the common perpendicular with edge q is outside the given end of p by an
+ * overhang: the distance of the end from the plane of line q and the perpendicular. A relative path
+ * of the bodies by s, which turns them by at most s / radius, changes it by at most
+ * s + (distance of the end to q) (s / radius) (1 + 2.2 / sine). Returns the path that may bring the
+ * foot to the end. */
+static double path_to_end(const double p[2][3], const double q[2][3], int end, double radius,
+                          double skin)
 {
     double a[3], b[3], m[3], out[3], r[3];
     brc_sub(a, p[end], p[1 - end]);
@@ -186,33 +191,30 @@ static double overhang(const double p[2][3], const double q[2][3], double lq, in
     brc_normalise(b, b);
     brc_cross(m, a, b);
     double sine = brc_normalise(m, m);
+    if (sine <= 10 * skin / radius)
+        return 0;
     brc_cross(out, b, m);
-    /* the plane's normal, along the edge's way out of this end */
-    if (brc_dot(out, a) < 0)
-        brc_scale(out, out, -1);
     brc_sub(r, q[0], p[end]);
-    double near = point_to_edge(p[end], q, b, lq) + skin;
-    *change = sine > 10 * turn ? skin + near * turn * (1 + 2.2 / sine) : HUGE_VAL;
-    return brc_dot(r, out);
+    /* the plane's normal is along the edge's way out of this end */
+    double overhang = brc_dot(r, out) * (brc_dot(out, a) < 0 ? -1 : 1);
+    double arm = point_to_edge(p[end], q, b) + skin;
+    return overhang / (1 + arm / radius * (1 + 2.2 / sine));
 }
 
-/* True when no motion within the skin brings both feet inside their edges. */
-static bool stays_outside(const double ends[4][3], const double length[2], double turn, double skin)
+/* Relative path that may bring both feet inside their edges. */
+static double path_to_inside(const double ends[4][3], double radius, double skin)
 {
-    for (int k = 0; k < 4; k++) {
-        const double(*p)[3] = ends + (k & 2), (*q)[3] = ends + (2 - (k & 2));
-        double change, out = overhang(p, q, length[k < 2], k & 1, turn, skin, &change);
-        if (out > change)
-            return true;
-    }
-    return false;
+    double most = 0;
+    for (int k = 0; k < 4; k++)
+        most = fmax(most, path_to_end(ends + (k & 2), ends + (2 - (k & 2)), k & 1, radius, skin));
+    return most;
 }
 
 static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct side sides[2],
-                      enum poly_rule rule, double reach, double skin)
+                      const struct poly_pair *p, enum poly_rule rule, double skin)
 {
     const struct side *a = &sides[0], *b = &sides[1];
-    double turn = skin / fmin(a->radius, b->radius);
+    double radius = fmin(a->radius, b->radius);
     for (int32_t i = 0; i < a->own->n_edges; i++) {
         if (!a->near_edge[i])
             continue;
@@ -222,15 +224,15 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
         for (int32_t j = 0; j < b->own->n_edges; j++) {
             if (!b->near_edge[j])
                 continue;
-            const double length[2] = {a->own->edge[i].length, b->own->edge[j].length};
             brc_copy(ends[2], b->v[b->own->end[j][0]]);
             brc_copy(ends[3], b->v[b->own->end[j][1]]);
-            if (poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) >= reach)
-                continue;
-            if (rule != POLY_CLOSED && stays_outside(ends, length, turn, skin))
-                continue;
-            struct poly_feature f = {.i = i, .j = j, .near = POLY_NONE_NEAR, .kind = POLY_EDGES};
-            BRC_TRY(poly_list_add(ctx, l, &f));
+            double free = poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) - p->rest;
+            if (rule != POLY_CLOSED && free < skin)
+                free = fmax(free, path_to_inside(ends, radius, skin));
+            struct poly_feature f = {
+                .free = free, .i = i, .j = j, .near = POLY_NONE_NEAR, .kind = POLY_EDGES};
+            if (free < skin)
+                BRC_TRY(poly_list_add(ctx, l, &f));
         }
     }
     return 0;
@@ -267,5 +269,5 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
         find_near(&sides[k], reach);
         BRC_TRY(list_vertices(ctx, l, &sides[k], p, rule, skin));
     }
-    return list_edges(ctx, l, sides, rule, reach, skin);
+    return list_edges(ctx, l, sides, p, rule, skin);
 }

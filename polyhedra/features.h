@@ -9,10 +9,11 @@ enum poly_rule { POLY_CLOSED, POLY_STRICT, POLY_MERGED };
 enum poly_kind { POLY_VERTEX_A, POLY_VERTEX_B, POLY_EDGES };
 
 /* A feature pair. POLY_VERTEX_A: vertex i of a and face j of b (merged: the place of its foot on
- * b); POLY_VERTEX_B: face (place) i of a and vertex j of b; POLY_EDGES: edges i and j. near: the
- * only vertex of the other core that may come near enough to lower a merged vertex's weight. */
+ * b); POLY_VERTEX_B: face (place) i of a and vertex j of b; POLY_EDGES: edges i and j. */
 struct poly_feature {
-    int32_t i, j, near;
+    double free; /* m, relative path of the bodies before the pair can touch */
+    int32_t i, j;
+    int32_t near; /* the only vertex of the other core that may lower a merged vertex's weight */
     uint8_t kind;
 };
 enum { POLY_NONE_NEAR = -1, POLY_MANY_NEAR = -2 };
@@ -138,6 +139,7 @@ static inline bool poly_foot_on_core(struct poly_foot *foot, const struct poly_c
     int32_t index = *place >> 2;
     if ((*place & 3) == POLY_ON_FACE) {
         double h = poly_height(&c->face[index], q);
+        foot->s = h;
         if (h >= rest) /* a lower bound of the distance */
             return false;
         if (h >= 0 && poly_above(c, &c->face[index], q)) {
@@ -163,14 +165,17 @@ static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pai
     double q[3], sign = of_b ? 1 : -1;
     struct poly_foot foot;
     poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
+    t->delta = 0;
     if (rule != POLY_MERGED) {
         if (!poly_foot_on_face(&foot, c, *place, q, rule, p->rest))
             return false;
         poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
         return true;
     }
-    if (!poly_foot_on_core(&foot, c, place, q, p->rest))
+    if (!poly_foot_on_core(&foot, c, place, q, p->rest)) {
+        t->delta = p->rest - foot.s;
         return false;
+    }
     poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
     poly_weigh_vertex(t, v, of_b ? p->va : p->vb, c->n_vertices, near, sign, p);
     return true;
@@ -183,8 +188,12 @@ static inline bool poly_touch_crossing(struct poly_touch *t, const struct poly_p
                                        uint8_t *active, const enum poly_rule rule)
 {
     double rm = brc_dot(lines->r, lines->m);
-    if (!poly_feet_inside(lines) || rm * rm >= p->rest * p->rest * lines->m2)
+    if (!poly_feet_inside(lines))
         return false;
+    if (rm * rm >= p->rest * p->rest * lines->m2) {
+        t->delta = p->rest - fabs(rm) / sqrt(lines->m2);
+        return false;
+    }
     struct poly_crossing x;
     poly_cross_edges(&x, lines);
     bool has_side = *active == 1 || *active == 2, flipped = has_side ? *active == 2 : x.d < 0;
@@ -217,6 +226,7 @@ static inline bool poly_touch_closed_edges(struct poly_touch *t, const struct po
 static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair *p, int32_t i,
                                     int32_t j, uint8_t *active, const enum poly_rule rule)
 {
+    t->delta = 0;
     const int32_t *ea = p->a.end[i], *eb = p->b.end[j];
     const double *p0 = p->va[ea[0]];
     struct poly_lines lines;
@@ -229,7 +239,7 @@ static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair
 }
 
 /* How a listed feature pair touches now; *active is its side (0 when apart), and the remembered
- * place may be updated. */
+ * place may be updated. When apart, -delta is a lower bound of the gap, and nothing else is set. */
 static inline bool poly_touch(struct poly_touch *t, const struct poly_pair *p,
                               const struct poly_feature *f, int32_t *place, uint8_t *active,
                               const enum poly_rule rule)

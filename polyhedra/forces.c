@@ -122,14 +122,21 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
     law_of_pair(&law, sim, c->a[row], c->b[row]);
     size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
+    double room = ((const struct poly_rows *)c->model_columns)->room[row];
     for (size_t p = first; p < end; p++) {
         struct poly_touch t;
+        if (room > points->sleep[p])
+            continue;
         struct poly_feature f = poly_point(points, p);
         int32_t *place = f.kind == POLY_VERTEX_B ? &points->i[p] : &points->j[p];
         if (poly_touch(&t, &pair, &f, place, &points->active[p], rule)) {
+            points->sleep[p] = HUGE_VAL;
             poly_act(ledger, s, &t, &law, m, points, p, friction, viscous);
             s->gap = fmin(s->gap, -t.delta);
-        } else if (points->weight[p] > 0) {
+            continue;
+        }
+        points->sleep[p] = room - fmax(-t.delta, 0);
+        if (points->weight[p] > 0) {
             if (friction)
                 poly_release(ledger, &law, m, points->xi[p], points->weight[p]);
             points->weight[p] = 0;

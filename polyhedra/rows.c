@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Skins of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
-static const double LIST_SKIN = 0.01, WALL_SKIN = 0.05;
+static const double LIST_SKIN = 0.02, WALL_SKIN = 0.05;
 /* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
 static const double PLATEN_TOLERANCE = 1e-6;
 
@@ -238,6 +238,7 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
         points->i[kept] = points->i[p];
         points->j[kept] = points->j[p];
         points->near[kept] = points->near[p];
+        points->sleep[kept] = points->sleep[p];
         points->weight[kept] = points->weight[p];
         memmove(points->n[kept], points->n[p], sizeof points->n[p]);
         memmove(points->xi[kept], points->xi[p], sizeof points->xi[p]);
@@ -246,12 +247,14 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
     return kept - first;
 }
 
-static void set_point(const struct poly_points *points, size_t p, const struct poly_feature *f)
+static void set_point(const struct poly_points *points, size_t p, const struct poly_feature *f,
+                      double room)
 {
     points->kind[p] = f->kind;
     points->i[p] = f->i;
     points->j[p] = f->j;
     points->near[p] = f->near;
+    points->sleep[p] = room - f->free;
     points->active[p] = 0;
     points->weight[p] = 0;
     brc_set(points->n[p], 0, 0, 0);
@@ -263,6 +266,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
 static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t row,
                           const struct poly_list *list, bool merged)
 {
+    double room = ((const struct poly_rows *)c->model_columns)->room[row];
     size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
     size_t n = list->n > kept ? list->n : kept;
     c->np[row] = (int32_t)kept;
@@ -276,7 +280,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
         if (p < first + kept)
             points->near[p] = list->feature[k].near;
         else if (next < first + n)
-            set_point(points, next++, &list->feature[k]);
+            set_point(points, next++, &list->feature[k], room);
     }
     c->np[row] = (int32_t)(next - first);
     return 0;

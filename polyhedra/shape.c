@@ -182,9 +182,9 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
         e->side[1] = twin;
         e->face[0] = f;
         e->face[1] = face_of_side(face, twin);
-        brc_sub(e->dir, solid->vertex[v1], solid->vertex[v0]);
-        e->length = brc_normalise(e->dir, e->dir);
-        if (!(e->length > 0))
+        double along[3];
+        brc_sub(along, solid->vertex[v1], solid->vertex[v0]);
+        if (!(brc_norm2(along) > 0))
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "body %zu: edge %d-%d has no length", s->n, v0, v1);
         link[k].edge = link[twin].edge = n_edges++;
     }

@@ -34,8 +34,6 @@ struct poly_origin {
 };
 
 struct poly_edge {
-    double dir[3]; /* unit, from the first end to the second */
-    double length;
     int32_t side[2]; /* the sides of the two faces that meet */
     int32_t face[2];
 };
