@@ -132,50 +132,94 @@ static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], co
     brc_cross(t->c, arm, t->g);
 }
 
-/* Vertex against the core by the rule `merged`, from the place where its foot was. */
-static inline bool poly_foot_on_core(struct poly_foot *foot, const struct poly_core *c,
-                                     int32_t *place, const double q[3], double rest)
+/* How far q may move before its foot leaves the place that it has; 0 inside the core. */
+static inline double poly_margin(const struct poly_core *c, const struct poly_foot *foot,
+                                 const double q[3])
 {
-    int32_t index = *place >> 2;
-    if ((*place & 3) == POLY_ON_FACE) {
-        double h = poly_height(&c->face[index], q);
-        foot->s = h;
-        if (h >= rest) /* a lower bound of the distance */
-            return false;
-        if (h >= 0 && poly_above(c, &c->face[index], q)) {
-            poly_foot_face(foot, c, index, h);
-            return true;
+    int32_t index = foot->place >> 2;
+    double margin = foot->s, along[3], d[3];
+    if ((foot->place & 3) == POLY_ON_FACE) {
+        const struct poly_face *f = &c->face[index];
+        for (int32_t k = f->first; k < f->first + f->n_sides; k++)
+            margin = fmin(margin, c->side[k].off - brc_dot(c->side[k].m, q));
+    } else if ((foot->place & 3) == POLY_ON_EDGE) {
+        const struct poly_edge *e = &c->edge[index];
+        double t = poly_along_edge(c, index, q, along), length = brc_norm(along);
+        margin = fmin(margin, fmin(t, 1 - t) * length);
+        for (int k = 0; k < 2; k++) {
+            const struct poly_side *side = &c->side[e->side[k]];
+            margin = fmin(margin, brc_dot(side->m, q) - side->off);
+        }
+    } else {
+        brc_sub(d, q, c->vertex[index]);
+        for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
+            const int32_t *end = c->end[c->star[k]];
+            brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
+            margin = fmin(margin, -brc_dot(d, along) / brc_norm(along));
         }
     }
-    poly_foot_walk(foot, c, q, *place);
-    *place = foot->place;
-    return foot->s < rest;
+    return margin;
 }
 
-/* Vertex v (in space) of one body against the core c of the other. *place is the face, or under
- * `merged` the remembered place, which is updated; near is the vertex of the other core that may
- * lower the weight. */
-static inline bool poly_touch_vertex(struct poly_touch *t, const struct poly_pair *p,
-                                     const bool of_b, int32_t vertex, int32_t *place, int32_t near,
-                                     const enum poly_rule rule)
+/* Distance of q to the core at a place that its foot has for sure. */
+static inline void poly_foot_known(struct poly_foot *foot, const struct poly_core *c, int32_t place,
+                                   const double q[3])
+{
+    int32_t index = place >> 2;
+    if ((place & 3) == POLY_ON_FACE) {
+        poly_foot_face(foot, c, index, poly_height(&c->face[index], q));
+        return;
+    }
+    double x[3], along[3];
+    brc_copy(x, c->vertex[index]);
+    if ((place & 3) == POLY_ON_EDGE) {
+        double t = poly_along_edge(c, index, q, along);
+        brc_copy(x, c->vertex[c->end[index][0]]);
+        brc_axpy(x, t, along);
+    }
+    poly_foot_point(foot, q, x, foot->n, place);
+}
+
+/* Vertex v (in space) of one body against the core c of the other by `closed` and `strict`. */
+static inline bool poly_touch_face(struct poly_touch *t, const struct poly_pair *p, const bool of_b,
+                                   int32_t vertex, int32_t face, const enum poly_rule rule)
 {
     const struct poly_core *c = of_b ? &p->a : &p->b;
     const double(*rm)[3] = of_b ? p->ra : p->rb;
     const double *v = of_b ? p->vb[vertex] : p->va[vertex];
-    double q[3], sign = of_b ? 1 : -1;
+    double q[3];
     struct poly_foot foot;
     poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
     t->delta = 0;
-    if (rule != POLY_MERGED) {
-        if (!poly_foot_on_face(&foot, c, *place, q, rule, p->rest))
-            return false;
-        poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
-        return true;
-    }
-    if (!poly_foot_on_core(&foot, c, place, q, p->rest)) {
-        t->delta = p->rest - foot.s;
+    if (!poly_foot_on_face(&foot, c, face, q, rule, p->rest))
         return false;
+    poly_vertex_touch(t, &foot, rm, v, of_b ? 1 : -1, p->rest);
+    return true;
+}
+
+/* By `merged`: *place is the remembered place, which is updated; near is the vertex of the other
+ * core that may lower the weight. *margin is how far the vertex may move before the place changes:
+ * > 0 on entry says that the place is sure, otherwise it is found. */
+static inline bool poly_touch_core(struct poly_touch *t, const struct poly_pair *p, const bool of_b,
+                                   int32_t vertex, int32_t *place, int32_t near, double *margin)
+{
+    const struct poly_core *c = of_b ? &p->a : &p->b;
+    const double(*rm)[3] = of_b ? p->ra : p->rb;
+    const double *v = of_b ? p->vb[vertex] : p->va[vertex];
+    double q[3];
+    struct poly_foot foot;
+    poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
+    if (*margin > 0) {
+        poly_foot_known(&foot, c, *place, q);
+    } else {
+        poly_foot_walk(&foot, c, q, *place);
+        *place = foot.place;
+        *margin = poly_margin(c, &foot, q);
     }
+    t->delta = p->rest - foot.s;
+    if (foot.s >= p->rest)
+        return false;
+    double sign = of_b ? 1 : -1;
     poly_vertex_touch(t, &foot, rm, v, sign, p->rest);
     poly_weigh_vertex(t, v, of_b ? p->va : p->vb, c->n_vertices, near, sign, p);
     return true;
@@ -239,16 +283,27 @@ static inline bool poly_touch_edges(struct poly_touch *t, const struct poly_pair
 }
 
 /* How a listed feature pair touches now; *active is its side (0 when apart), and the remembered
- * place may be updated. When apart, -delta is a lower bound of the gap, and nothing else is set. */
-static inline bool poly_touch(struct poly_touch *t, const struct poly_pair *p,
-                              const struct poly_feature *f, int32_t *place, uint8_t *active,
-                              const enum poly_rule rule)
+ * place may be updated. When apart, -delta is a lower bound of the gap, and nothing else is set.
+ * *margin: as for poly_touch_core. */
+static inline bool poly_touch_again(struct poly_touch *t, const struct poly_pair *p,
+                                    const struct poly_feature *f, int32_t *place, uint8_t *active,
+                                    double *margin, const enum poly_rule rule)
 {
     if (f->kind == POLY_EDGES)
         return poly_touch_edges(t, p, f->i, f->j, active, rule);
     bool of_b = f->kind == POLY_VERTEX_B;
-    *active = poly_touch_vertex(t, p, of_b, of_b ? f->j : f->i, place, f->near, rule);
+    int32_t vertex = of_b ? f->j : f->i;
+    *active = rule == POLY_MERGED ? poly_touch_core(t, p, of_b, vertex, place, f->near, margin)
+                                  : poly_touch_face(t, p, of_b, vertex, *place, rule);
     return *active;
+}
+
+static inline bool poly_touch(struct poly_touch *t, const struct poly_pair *p,
+                              const struct poly_feature *f, int32_t *place, uint8_t *active,
+                              const enum poly_rule rule)
+{
+    double margin = 0;
+    return poly_touch_again(t, p, f, place, active, &margin, rule);
 }
 
 #endif

@@ -129,10 +129,15 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
             continue;
         struct poly_feature f = poly_point(points, p);
         int32_t *place = f.kind == POLY_VERTEX_B ? &points->i[p] : &points->j[p];
-        if (poly_touch(&t, &pair, &f, place, &points->active[p], rule)) {
+        double sure = room - points->hold[p], margin = sure;
+        bool touches = poly_touch_again(&t, &pair, &f, place, &points->active[p], &margin, rule);
+        if (rule == POLY_MERGED && sure <= 0)
+            points->hold[p] = room - margin;
+        if (touches) {
             points->sleep[p] = HUGE_VAL;
             poly_act(ledger, s, &t, &law, m, points, p, friction, viscous);
-            s->gap = fmin(s->gap, -t.delta);
+            if (-t.delta < s->gap)
+                s->gap = -t.delta;
             continue;
         }
         points->sleep[p] = room - fmax(-t.delta, 0);
@@ -144,13 +149,14 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
     }
 }
 
-/* Counts the step's relative path against the list's allowance. */
+/* Counts the step's relative path against the list's allowance; a's vertices near b move with it
+ * too, so its reach is taken that much larger. */
 static inline bool keeps_list(const struct brc_sim *sim, const struct poly_rows *rows, size_t row,
                               const struct poly_motion *m)
 {
-    const double *reach = sim->bodies.reach;
+    const double *reach = sim->bodies.reach, rest = 2 * poly_params_of(sim)->radius;
     const struct brc_contacts *c = &sim->pairs;
-    rows->room[row] -= poly_relative_path(m, reach[c->a[row]], reach[c->b[row]]);
+    rows->room[row] -= poly_relative_path(m, reach[c->a[row]], reach[c->b[row]] + rest);
     return rows->room[row] > 0;
 }
 

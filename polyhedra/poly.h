@@ -75,6 +75,7 @@ struct poly_rows {
     SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                          \
     SCALAR(int32_t, near, BRC_STATE, "1", "vertex that may lower the weight; -1 none, -2 many") \
     SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room")  \
+    SCALAR(double, hold, BRC_STATE, "m", "the place is sure while the row has more room")       \
     SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                              \
     VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                                  \
     VECTOR(double, xi, 3, BRC_STATE, "m", "tangential displacement, eq 9")

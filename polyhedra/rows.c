@@ -239,6 +239,7 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
         points->j[kept] = points->j[p];
         points->near[kept] = points->near[p];
         points->sleep[kept] = points->sleep[p];
+        points->hold[kept] = HUGE_VAL;
         points->weight[kept] = points->weight[p];
         memmove(points->n[kept], points->n[p], sizeof points->n[p]);
         memmove(points->xi[kept], points->xi[p], sizeof points->xi[p]);
@@ -255,6 +256,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     points->j[p] = f->j;
     points->near[p] = f->near;
     points->sleep[p] = room - f->free;
+    points->hold[p] = HUGE_VAL;
     points->active[p] = 0;
     points->weight[p] = 0;
     brc_set(points->n[p], 0, 0, 0);

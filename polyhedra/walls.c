@@ -53,7 +53,8 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
         struct poly_touch t;
         if (poly_touch_platen(&t, world[points->i[q]], platen, m->xb, p->radius)) {
             poly_act(ledger, s, &t, &law, m, points, q, friction, viscous);
-            s->gap = fmin(s->gap, -t.delta);
+            if (-t.delta < s->gap)
+                s->gap = -t.delta;
             points->active[q] = 1;
         } else if (points->active[q]) {
             if (friction)
