@@ -252,8 +252,8 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
 {
     size_t ha = (size_t)p->a.n_vertices * (size_t)p->b.n_faces;
     size_t hb = (size_t)p->b.n_vertices * (size_t)p->a.n_faces;
-    size_t na = (size_t)(p->a.n_vertices + p->a.n_edges);
-    size_t nb = (size_t)(p->b.n_vertices + p->b.n_edges);
+    size_t na = (size_t)p->a.n_vertices + (size_t)p->a.n_edges;
+    size_t nb = (size_t)p->b.n_vertices + (size_t)p->b.n_edges;
     double reach = p->rest + skin;
     l->n = 0;
     BRC_TRY(reserve(ctx, l, ha + hb, na + nb));

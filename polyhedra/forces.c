@@ -246,7 +246,7 @@ void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
         struct poly_pair pair;
         poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
         for (int32_t k = 0; k < c->np[row]; k++) {
-            size_t p = (size_t)(c->p0[row] + k);
+            size_t p = (size_t)c->p0[row] + (size_t)k;
             struct poly_active found = {.a = c->a[row],
                                         .b = c->b[row],
                                         .row = row,

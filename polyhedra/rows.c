@@ -173,7 +173,7 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
     if (c->status[row] == BRC_INTACT)
         return true;
     for (int32_t k = 0; k < c->np[row]; k++)
-        if (points->weight[c->p0[row] + k] > 0)
+        if (points->weight[(size_t)c->p0[row] + (size_t)k] > 0)
             return true;
     return false;
 }

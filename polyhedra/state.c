@@ -62,8 +62,8 @@ void poly_energy(const struct brc_sim *sim, const void *state, double stored[3])
     for (size_t row = 0; row < c->n; row++) {
         struct poly_touch t;
         for (int32_t k = 0; k < c->np[row]; k++)
-            if (touch_of_wall(&t, sim, st, row, (size_t)(c->p0[row] + k)))
-                add_point(&s, &t, (size_t)(c->p0[row] + k));
+            if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k))
+                add_point(&s, &t, (size_t)c->p0[row] + (size_t)k);
         if (c->status[row] != BRC_INTACT)
             continue;
         poly_hold_law(&r, sim, st, row, &bond);
@@ -132,7 +132,7 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
         struct poly_touch t;
         double mu = brc_sim_platen(sim, c->b[row])->friction;
         for (int32_t k = 0; k < c->np[row]; k++)
-            if (touch_of_wall(&t, sim, st, row, (size_t)(c->p0[row] + k)))
+            if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k))
                 add_touch(&s, c->a[row], c->b[row], &t, mu);
         if (c->status[row] != BRC_INTACT)
             continue;

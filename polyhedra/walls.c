@@ -49,7 +49,7 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
     bool friction = law.mu > 0 && law.kt > 0;
     const double(*world)[3] = (const double(*)[3])(st->world + st->shapes.vertex_first[c->a[row]]);
     for (int32_t k = 0; k < c->np[row]; k++) {
-        size_t q = (size_t)(c->p0[row] + k);
+        size_t q = (size_t)c->p0[row] + (size_t)k;
         struct poly_touch t;
         if (poly_touch_platen(&t, world[points->i[q]], platen, m->xb, p->radius)) {
             poly_act(ledger, s, &t, &law, m, points, q, friction, viscous);
