@@ -117,7 +117,7 @@ static double stiffness_bound(const struct brc_sim *sim)
 static int update_dt(struct brc_sim *sim)
 {
     double bound = stiffness_bound(sim);
-    if (bound <= LIMIT_GROWTH * sim->stiffness_bound)
+    if (sim->dt > 0 && bound <= LIMIT_GROWTH * sim->stiffness_bound)
         return 0;
     sim->stiffness_bound = bound;
     BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));

@@ -270,7 +270,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
 {
     double room = ((const struct poly_rows *)c->model_columns)->room[row];
     size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
-    size_t n = list->n > kept ? list->n : kept;
+    size_t n = kept + list->n;
     c->np[row] = (int32_t)kept;
     BRC_TRY(brc_contacts_points(ctx, c, row, (int32_t)n));
     struct poly_points *points = c->point_columns;

@@ -52,12 +52,23 @@ static inline void poly_start_motion(struct poly_motion *m, const struct brc_sim
     brc_sub(m->x, m->xb, m->xa);
 }
 
-/* Velocity of b relative to a at x. */
+/* Arm at the middle of the step of a point that is at r at its end. */
+static inline void poly_middle_arm(double r[3], const double w[3], double dt)
+{
+    double turn[3];
+    brc_cross(turn, w, r);
+    brc_axpy(r, -0.5 * dt, turn);
+}
+
+/* Velocity of b relative to a at x. With the arms at the middle of the step, a pair that turns as
+ * one body does not slip but for the third order of the step's angle. */
 static inline void poly_slip(double u[3], const struct poly_motion *m, const double x[3])
 {
     double ra[3], rb[3], ua[3], ub[3];
     brc_sub(ra, x, m->xa);
     brc_sub(rb, x, m->xb);
+    poly_middle_arm(ra, m->wa, m->dt);
+    poly_middle_arm(rb, m->wb, m->dt);
     brc_point_velocity(ua, m->va, m->wa, ra);
     brc_point_velocity(ub, m->vb, m->wb, rb);
     brc_sub(u, ub, ua);

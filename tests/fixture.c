@@ -49,6 +49,8 @@ void fixture_set(struct fixture *f, struct brc_param_list list, void *values, co
     strcpy(text, settings);
     for (char *save, *item = strtok_r(text, ";", &save); item; item = strtok_r(NULL, ";", &save)) {
         char *key = item + strspn(item, " "), *value = strchr(key, ':');
+        if (*key == '\0')
+            continue;
         assert_non_null(value);
         *value++ = '\0';
         CHECK_OK(&f->ctx, brc_params_set(&f->ctx, list, values, "test", key,
@@ -165,6 +167,8 @@ void fixture_loose(struct fixture *f, const struct brc_convex *cell, const doubl
     t->cell_facet = copy_of(NULL, n_faces, sizeof *t->cell_facet);
     t->cell = copy_of(NULL, n_faces, sizeof *t->cell);
     t->face = copy_of(NULL, n_faces, sizeof *t->face);
+    t->is_contact = copy_of(NULL, n_faces, sizeof *t->is_contact);
+    memset(t->is_contact, 1, n_faces);
     t->area = copy_of(NULL, n_faces, sizeof *t->area);
     t->centroid = copy_of(NULL, n_faces, sizeof *t->centroid);
     t->normal = copy_of(NULL, n_faces, sizeof *t->normal);
@@ -296,12 +300,15 @@ void fixture_list(struct fixture *f)
 {
     struct brc_sim *s = &f->sim;
     struct brc_candidates grains = {0}, platens = {0};
+    for (size_t i = 0; i < s->bodies.n; i++)
+        s->bodies.travel[i] += 100 * s->bodies.reach[i];
     CHECK_OK(&f->ctx, brc_grid_pairs(&f->ctx, s->bodies.x, s->bodies.reach, s->bodies.n_grains,
                                      s->skin, &grains));
     CHECK_OK(&f->ctx, brc_grid_platens(&f->ctx, s, &platens));
     CHECK_OK(&f->ctx, s->model.pairs(s, s->state, &grains, &platens));
     brc_candidates_free(&grains);
     brc_candidates_free(&platens);
+    memcpy(s->bodies.travel_listed, s->bodies.travel, s->bodies.n * sizeof *s->bodies.travel);
 }
 
 /* The sums over rows, once more and not by way of the adjacency. */
@@ -336,6 +343,7 @@ void fixture_carry(struct fixture *f, double dt)
     f->sim.dt = dt;
     for (size_t i = 0; i < b->n; i++) {
         double phi[3], turn[4], old[4];
+        b->travel[i] += dt * (brc_norm(b->v[i]) + b->reach[i] * brc_norm(b->w[i]));
         brc_axpy(b->x[i], dt, b->v[i]);
         brc_scale(phi, b->w[i], dt);
         brc_quat_from_rotation(turn, phi);

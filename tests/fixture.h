@@ -67,7 +67,8 @@ void fixture_ledger(struct fixture *f);
 /* Places every body as if the whole were turned by q about the origin, then moved by u, without
  * any history of it. */
 void fixture_place(struct fixture *f, const double q[4], const double u[3]);
-/* New candidates from the places now. */
+/* Bodies have been put elsewhere by hand: adds a long way to their travel, so that whatever hangs
+ * on it is found anew, and lists candidates from the places now. */
 void fixture_list(struct fixture *f);
 /* The model's forces of all rows for the places and velocities now; fills bodies.f and t. */
 void fixture_forces(struct fixture *f);

@@ -331,7 +331,7 @@ static void make_strangers(struct fixture *f, double distance)
     fixture_loose(f, cell, radius, 2);
     for (int i = 0; i < 2; i++)
         brc_convex_free(&cell[i]);
-    fixture_free_sim(f, &brc_model_vgcm, "mu: 0.4", "skin: 0.5");
+    fixture_free_sim(f, &brc_model_vgcm, "mu: 0.4", "skin: 0.5; dt: 1e-6 s");
 }
 
 /* Moves the second grain by (x, y, 0); returns the force on it along x. */

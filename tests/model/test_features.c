@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contact detection of polyhedra against a brute-force twin: random convex bodies and the packed
+ * dodecahedra whose contacts three independent programs have counted. */
+#include "tests/fixture.h"
+#include "tests/model/twin_features.h"
+
+#include "polyhedra/poly.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char DODECAHEDRA[] = "tests/data/dodecahedra-512.txt";
+
+/* Active feature contacts of the simulation, by vertices and by edges. */
+static void count_active(const struct fixture *f, int *vertices, int *edges)
+{
+    const struct brc_contacts *c = &f->sim.pairs;
+    const struct poly_points *p = c->point_columns;
+    *vertices = *edges = 0;
+    for (size_t r = 0; r < c->n; r++)
+        for (int32_t k = c->p0[r]; k < c->p0[r] + c->np[r]; k++) {
+            *vertices += p->active[k] && p->kind[k] != POLY_EDGES;
+            *edges += p->active[k] && p->kind[k] == POLY_EDGES;
+        }
+}
+
+/* Body i's core in space, from the core as it was when the body had x0, q0. */
+static void move_core(const struct fixture *f, size_t i, const struct twin_core *start,
+                      struct twin_core *now)
+{
+    const struct brc_bodies *b = &f->sim.bodies;
+    double m0[3][3], m[3][3];
+    brc_quat_matrix(m0, b->q0[i]);
+    brc_quat_matrix(m, b->q[i]);
+    for (size_t k = 0; k < start->n_vertices; k++) {
+        double r[3], body[3];
+        brc_sub(r, start->vertex[k], b->x0[i]);
+        brc_mat_mul_t(body, m0, r);
+        brc_mat_mul(r, m, body);
+        brc_add(now->vertex[k], r, b->x[i]);
+    }
+    for (size_t k = 0; k < start->n_faces; k++) {
+        double body[3];
+        brc_mat_mul_t(body, m0, start->normal[k]);
+        brc_mat_mul(now->normal[k], m, body);
+    }
+}
+
+/* A random convex body about centre: tangent planes of a sphere of radius 5 mm in random
+ * directions, and its core with every plane moved in by R. */
+static void random_body(struct fixture *f, const double centre[3], double radius,
+                        struct brc_convex *cell, struct brc_convex *core)
+{
+    enum { N_PLANES = 14 };
+    struct brc_plane planes[N_PLANES];
+    for (int i = 0; i < N_PLANES; i++) {
+        fixture_draw_unit(f, planes[i].n);
+        if (i % 2 == 1) /* opposite directions bound it for sure, with the next one's help */
+            brc_scale(planes[i].n, planes[i - 1].n, -1);
+        planes[i].id = i;
+    }
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < N_PLANES; i++)
+            planes[i].d = brc_dot(planes[i].n, centre) + 5e-3 * (1 + 0.02 * (i % 5)) - k * radius;
+        CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, k == 0 ? cell : core, planes, N_PLANES,
+                                                 centre, 0.1));
+    }
+}
+
+static void check_random_bodies(struct fixture *f, const char *rule, bool strict)
+{
+    const double radius = 1e-3, stiffness = 1e8;
+    struct brc_convex cell[2], core[2];
+    struct twin_core start[2], now[2];
+    char settings[128];
+    int n_touching = 0, n_edges = 0;
+    for (int i = 0; i < 2; i++) {
+        brc_convex_init(&cell[i]);
+        brc_convex_init(&core[i]);
+        random_body(f, (double[3]){i * 0.02, 0, 0}, radius, &cell[i], &core[i]);
+        twin_core_from(&start[i], &core[i]);
+        twin_core_from(&now[i], &core[i]);
+    }
+    fixture_loose(f, cell, NULL, 2);
+    snprintf(settings, sizeof settings, "radius: 1 mm; mu: 0; gn: 0 1/s; features: %s", rule);
+    fixture_free_sim(f, brc_registry_find("polyhedra"), settings, "dt: 1e-9 s");
+    for (int trial = 0; trial < 500; trial++) {
+        struct brc_bodies *b = &f->sim.bodies;
+        double phi[3], n[3], old[4];
+        for (size_t i = 0; i < 2; i++) {
+            double q[4];
+            fixture_draw_unit(f, phi);
+            brc_scale(phi, phi, 3 * fixture_draw(f));
+            brc_quat_from_rotation(q, phi);
+            memcpy(old, b->q[i], sizeof old);
+            brc_quat_mul(b->q[i], q, old);
+        }
+        fixture_draw_unit(f, n);
+        b->x[1][0] = 10; /* apart first, so that nothing is remembered of the last trial */
+        fixture_forces(f);
+        fixture_list(f);
+        assert_int_equal(f->sim.pairs.n, 0);
+        brc_copy(b->x[1], b->x[0]);
+        brc_axpy(b->x[1], 1.3e-2 + 3e-3 * fixture_draw(f), n);
+        for (size_t i = 0; i < 2; i++)
+            move_core(f, i, &start[i], &now[i]);
+        if (twin_overlap(&now[0], &now[1]))
+            continue;
+        fixture_list(f);
+        fixture_forces(f);
+        struct twin_sum sum = {.closest = HUGE_VAL};
+        twin_compare(&now[0], &now[1], 2 * radius, strict, &sum);
+        int vertices, edges;
+        count_active(f, &vertices, &edges);
+        if (strict) {
+            assert_int_equal(vertices, sum.vertex_face);
+            assert_int_equal(edges, sum.edge_edge);
+        }
+        double force[3], moment[3], size = stiffness * (brc_norm(sum.overlap) + 1e-6), arm[3];
+        brc_scale(force, sum.overlap, stiffness);
+        brc_cross(arm, b->x[1], force);
+        brc_scale(moment, sum.moment, stiffness);
+        brc_sub(moment, moment, arm);
+        /* distances of 1e-3 m known to 1e-17 m; directions over them to 1e-14 */
+        CHECK_NEAR_ARRAY(b->f[1], force, 3, 1e-10 * size, 0);
+        CHECK_NEAR_ARRAY(b->t[1], moment, 3, 1e-12 * size, 0);
+        n_touching += brc_norm(force) > 0;
+        n_edges += sum.edge_edge > 0;
+    }
+    assert_true(n_touching > 60 && n_edges > 20);
+    for (int i = 0; i < 2; i++) {
+        twin_core_free(&start[i]);
+        twin_core_free(&now[i]);
+        brc_convex_free(&cell[i]);
+        brc_convex_free(&core[i]);
+    }
+}
+
+static void random_bodies_strict(void **state)
+{
+    for (int i = 0; i < 4; i++)
+        check_random_bodies(*state, "strict", true);
+}
+
+static void random_bodies_closed(void **state)
+{
+    for (int i = 0; i < 4; i++)
+        check_random_bodies(*state, "closed", false);
+}
+
+/* --- the file ----------------------------------------------------------------------------------
+ */
+
+struct dodecahedra {
+    double radius, vertex[20][3], x[512][3], q[512][4];
+    size_t n;
+};
+
+static void read_dodecahedra(struct dodecahedra *d)
+{
+    FILE *file = fopen(DODECAHEDRA, "r");
+    char line[512];
+    size_t n_vertices = 0;
+    assert_non_null(file);
+    d->n = 0;
+    while (fgets(line, sizeof line, file)) {
+        if (line[0] == 'r')
+            assert_int_equal(sscanf(line, "r %lf", &d->radius), 1);
+        if (line[0] == 'v' && n_vertices < 20) {
+            double *v = d->vertex[n_vertices++];
+            assert_int_equal(sscanf(line, "v %lf %lf %lf", &v[0], &v[1], &v[2]), 3);
+        }
+        if (line[0] == 'b' && d->n < 512) {
+            double *x = d->x[d->n], *q = d->q[d->n];
+            assert_int_equal(sscanf(line, "b %lf %lf %lf %lf %lf %lf %lf", &x[0], &x[1], &x[2],
+                                    &q[0], &q[1], &q[2], &q[3]),
+                             7);
+            d->n++;
+        }
+    }
+    fclose(file);
+    assert_int_equal(n_vertices, 20);
+    assert_int_equal(d->n, 512);
+}
+
+/* Face normals of a dodecahedron from its vertices: the five that are farthest along each of the
+ * twelve directions through the vertices of the dual icosahedron; found as sums of triples. */
+static size_t dodecahedron_planes(const struct dodecahedra *d, struct brc_plane *planes)
+{
+    size_t n = 0;
+    for (int i = 0; i < 20; i++)
+        for (int j = 0; j < i; j++)
+            for (int k = 0; k < j; k++) {
+                double u[3], v[3], m[3];
+                brc_sub(u, d->vertex[j], d->vertex[i]);
+                brc_sub(v, d->vertex[k], d->vertex[i]);
+                brc_cross(m, u, v);
+                brc_normalise(m, m);
+                if (brc_dot(m, d->vertex[i]) < 0)
+                    brc_scale(m, m, -1);
+                double height = brc_dot(m, d->vertex[i]);
+                bool is_face = true, is_new = true;
+                for (int l = 0; l < 20; l++)
+                    is_face &= brc_dot(m, d->vertex[l]) < height * (1 + 1e-9);
+                for (size_t l = 0; l < n; l++)
+                    is_new &= brc_dot(m, planes[l].n) < 0.99;
+                if (is_face && is_new) {
+                    brc_copy(planes[n].n, m);
+                    planes[n].d = height;
+                    planes[n].id = (int32_t)n;
+                    n++;
+                }
+            }
+    return n;
+}
+
+static void place_planes(const struct dodecahedra *d, size_t body, const struct brc_plane *from,
+                         double out, struct brc_plane *to)
+{
+    for (int i = 0; i < 12; i++) {
+        brc_quat_rotate(to[i].n, d->q[body], from[i].n);
+        to[i].d = from[i].d + out + brc_dot(to[i].n, d->x[body]);
+        to[i].id = i;
+    }
+}
+
+static void dodecahedra_are_counted_right(void **state)
+{
+    struct fixture *f = *state;
+    struct dodecahedra *d = test_malloc(sizeof *d);
+    struct brc_plane planes[20], placed[12];
+    struct brc_convex *cell = test_calloc(512, sizeof *cell), core;
+    struct twin_core *twin = test_calloc(512, sizeof *twin);
+    read_dodecahedra(d);
+    assert_int_equal(dodecahedron_planes(d, planes), 12);
+    brc_convex_init(&core);
+    for (size_t i = 0; i < 512; i++) {
+        brc_convex_init(&cell[i]);
+        place_planes(d, i, planes, d->radius, placed);
+        CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &cell[i], placed, 12, d->x[i], 2));
+        place_planes(d, i, planes, 0, placed);
+        CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &core, placed, 12, d->x[i], 2));
+        twin_core_from(&twin[i], &core);
+    }
+    struct twin_sum sum = {.closest = HUGE_VAL};
+    for (size_t i = 0; i < 512; i++)
+        for (size_t j = i + 1; j < 512; j++) {
+            double r[3];
+            brc_sub(r, d->x[j], d->x[i]);
+            if (brc_norm(r) < 2 * (0.446 + d->radius)) /* circumradius sqrt(3) 0.25718 */
+                twin_compare(&twin[i], &twin[j], 2 * d->radius, true, &sum);
+        }
+    print_message("twin: vertex-face %d, edge-edge %d, vertex-edge %d, vertex-vertex %d\n",
+                  sum.vertex_face, sum.edge_edge, sum.vertex_edge, sum.vertex_vertex);
+    assert_int_equal(sum.vertex_face, 1710);
+    assert_int_equal(sum.edge_edge, 1510);
+    assert_int_equal(sum.vertex_edge, 125);
+    assert_int_equal(sum.vertex_vertex, 3);
+
+    char settings[128];
+    int vertices, edges;
+    fixture_loose(f, cell, NULL, 512);
+    snprintf(settings, sizeof settings, "radius: %.17g m; features: strict; mu: 0; gn: 0 1/s",
+             d->radius);
+    fixture_free_sim(f, brc_registry_find("polyhedra"), settings, "");
+    count_active(f, &vertices, &edges);
+    assert_int_equal(vertices, 1710);
+    assert_int_equal(edges, 1510);
+    for (size_t i = 0; i < 512; i++) {
+        brc_convex_free(&cell[i]);
+        twin_core_free(&twin[i]);
+    }
+    brc_convex_free(&core);
+    test_free(cell);
+    test_free(twin);
+    test_free(d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(random_bodies_strict),
+        FIXTURE_TEST(random_bodies_closed),
+        FIXTURE_TEST(dodecahedra_are_counted_right),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
