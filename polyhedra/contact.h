@@ -146,7 +146,7 @@ static inline void poly_viscous(double f[3], const double n[3], const double v[3
                                 double gt, double fn)
 {
     double vn = brc_dot(v, n);
-    double normal = fmax(-gn * vn, -fn); /* eq:gt12:10 */
+    double normal = poly_most(-gn * vn, -fn); /* eq:gt12:10 */
     for (int i = 0; i < 3; i++)
         f[i] = normal * n[i] - gt * (v[i] - vn * n[i]);
 }

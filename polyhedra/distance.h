@@ -12,6 +12,17 @@
 /* Edges count as parallel when the squared sine of their angle is below this. */
 #define POLY_PARALLEL 1e-12
 
+/* fmin and fmax are calls; these are instructions. */
+static inline double poly_least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double poly_most(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* The place on a core that is closest to a point. A place is named by a code: 4 x index + kind. */
 enum poly_place { POLY_ON_FACE, POLY_ON_EDGE, POLY_ON_VERTEX };
 
@@ -110,7 +121,7 @@ static inline double poly_to_edge(const struct poly_core *c, int32_t edge, const
 {
     double along[3], r[3], t = poly_along_edge(c, edge, p, along);
     brc_copy(x, c->vertex[c->end[edge][0]]);
-    brc_axpy(x, fmin(fmax(t, 0), 1), along);
+    brc_axpy(x, poly_least(poly_most(t, 0), 1), along);
     brc_sub(r, p, x);
     return brc_norm(r);
 }
@@ -316,7 +327,7 @@ static inline void poly_cross_edges(struct poly_crossing *x, const struct poly_l
 
 static inline double poly_clamp(double t, double high)
 {
-    return fmin(fmax(t, 0), high);
+    return poly_least(poly_most(t, 0), high);
 }
 
 /* Feet of the closest points of two closed edges (eq 1), in [0, 1]. Parallel edges: the middle of
@@ -327,7 +338,8 @@ static inline void poly_closed_feet(const struct poly_lines *x, bool parallel, d
     if (parallel) {
         double low = ra / x->la2, part = sqrt(x->lb2 / x->la2),
                high = low + (x->c > 0 ? part : -part);
-        double from = poly_clamp(fmin(low, high), 1), to = poly_clamp(fmax(low, high), 1);
+        double from = poly_clamp(poly_least(low, high), 1),
+               to = poly_clamp(poly_most(low, high), 1);
         *s = (from + to) / 2;
         *t = poly_clamp((*s - low) / (high - low), 1);
         return;

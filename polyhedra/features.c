@@ -84,8 +84,8 @@ static double measure_heights(struct side *s)
     for (int32_t f = 0; f < n_faces; f++) {
         double lowest = HUGE_VAL;
         for (int32_t v = 0; v < s->own->n_vertices; v++)
-            lowest = fmin(lowest, s->height[v * n_faces + f]);
-        gap = fmax(gap, lowest);
+            lowest = poly_least(lowest, s->height[v * n_faces + f]);
+        gap = poly_most(gap, lowest);
     }
     return gap;
 }
@@ -97,7 +97,7 @@ static void find_near(struct side *s, double reach)
     for (int32_t v = 0; v < s->own->n_vertices; v++) {
         double highest = -HUGE_VAL;
         for (int32_t f = 0; f < n_faces; f++)
-            highest = fmax(highest, s->height[v * n_faces + f]);
+            highest = poly_most(highest, s->height[v * n_faces + f]);
         s->near_vertex[v] = highest < reach;
     }
     for (int32_t e = 0; e < s->own->n_edges; e++) {
@@ -105,7 +105,7 @@ static void find_near(struct side *s, double reach)
         const double *h1 = s->height + s->own->end[e][1] * n_faces;
         double highest = -HUGE_VAL;
         for (int32_t f = 0; f < n_faces; f++)
-            highest = fmax(highest, fmin(h0[f], h1[f]));
+            highest = poly_most(highest, poly_least(h0[f], h1[f]));
         s->near_edge[e] = highest < reach;
     }
 }
@@ -206,7 +206,8 @@ static double path_to_inside(const double ends[4][3], double radius, double skin
 {
     double most = 0;
     for (int k = 0; k < 4; k++)
-        most = fmax(most, path_to_end(ends + (k & 2), ends + (2 - (k & 2)), k & 1, radius, skin));
+        most =
+            poly_most(most, path_to_end(ends + (k & 2), ends + (2 - (k & 2)), k & 1, radius, skin));
     return most;
 }
 
@@ -214,7 +215,7 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
                       const struct poly_pair *p, enum poly_rule rule, double skin)
 {
     const struct side *a = &sides[0], *b = &sides[1];
-    double radius = fmin(a->radius, b->radius);
+    double radius = poly_least(a->radius, b->radius);
     for (int32_t i = 0; i < a->own->n_edges; i++) {
         if (!a->near_edge[i])
             continue;
@@ -228,7 +229,7 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
             brc_copy(ends[3], b->v[b->own->end[j][1]]);
             double free = poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) - p->rest;
             if (rule != POLY_CLOSED && free < skin)
-                free = fmax(free, path_to_inside(ends, radius, skin));
+                free = poly_most(free, path_to_inside(ends, radius, skin));
             struct poly_feature f = {
                 .free = free, .i = i, .j = j, .near = POLY_NONE_NEAR, .kind = POLY_EDGES};
             if (free < skin)
@@ -243,7 +244,7 @@ static double core_radius(const struct poly_core *c)
 {
     double most = 0;
     for (int32_t v = 0; v < c->n_vertices; v++)
-        most = fmax(most, brc_norm2(c->vertex[v]));
+        most = poly_most(most, brc_norm2(c->vertex[v]));
     return sqrt(most);
 }
 
@@ -261,8 +262,8 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
                              l->near, l->near + p->a.n_vertices},
                             {&p->b, &p->a, p->vb, p->xa, p->ra, core_radius(&p->b), l->height + ha,
                              l->near + na, l->near + na + p->b.n_vertices}};
-    double gap = fmax(measure_heights(&sides[0]), measure_heights(&sides[1]));
-    *allowance = fmax(skin, gap - p->rest);
+    double gap = poly_most(measure_heights(&sides[0]), measure_heights(&sides[1]));
+    *allowance = poly_most(skin, gap - p->rest);
     if (gap >= reach)
         return 0;
     for (int k = 0; k < 2; k++) {

@@ -141,21 +141,21 @@ static inline double poly_margin(const struct poly_core *c, const struct poly_fo
     if ((foot->place & 3) == POLY_ON_FACE) {
         const struct poly_face *f = &c->face[index];
         for (int32_t k = f->first; k < f->first + f->n_sides; k++)
-            margin = fmin(margin, c->side[k].off - brc_dot(c->side[k].m, q));
+            margin = poly_least(margin, c->side[k].off - brc_dot(c->side[k].m, q));
     } else if ((foot->place & 3) == POLY_ON_EDGE) {
         const struct poly_edge *e = &c->edge[index];
         double t = poly_along_edge(c, index, q, along), length = brc_norm(along);
-        margin = fmin(margin, fmin(t, 1 - t) * length);
+        margin = poly_least(margin, poly_least(t, 1 - t) * length);
         for (int k = 0; k < 2; k++) {
             const struct poly_side *side = &c->side[e->side[k]];
-            margin = fmin(margin, brc_dot(side->m, q) - side->off);
+            margin = poly_least(margin, brc_dot(side->m, q) - side->off);
         }
     } else {
         brc_sub(d, q, c->vertex[index]);
         for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
             const int32_t *end = c->end[c->star[k]];
             brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
-            margin = fmin(margin, -brc_dot(d, along) / brc_norm(along));
+            margin = poly_least(margin, -brc_dot(d, along) / brc_norm(along));
         }
     }
     return margin;

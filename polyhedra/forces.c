@@ -97,11 +97,11 @@ static inline void bond_row(struct brc_sim *sim, const struct poly_state *st, si
 }
 
 static inline void law_of_pair(struct poly_spring_law *law, const struct brc_sim *sim, int32_t a,
-                               int32_t b)
+                               int32_t b, const bool viscous)
 {
     const struct poly_params *p = poly_params_of(sim);
     const double *mass = sim->bodies.true_mass;
-    double effective = mass[a] * mass[b] / (mass[a] + mass[b]);
+    double effective = viscous ? mass[a] * mass[b] / (mass[a] + mass[b]) : 0;
     *law = (struct poly_spring_law){.kn = poly_pair_stiffness(p->kn, p->kn),
                                     .kt = poly_pair_stiffness(p->kt, p->kt),
                                     .mu = p->mu,
@@ -120,10 +120,15 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
     struct poly_spring_law law;
     struct poly_pair pair;
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
-    law_of_pair(&law, sim, c->a[row], c->b[row]);
+    law_of_pair(&law, sim, c->a[row], c->b[row], viscous);
+    struct poly_rows *rows = c->model_columns;
+    double room = rows->room[row];
     size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
-    double room = ((const struct poly_rows *)c->model_columns)->room[row];
-    for (size_t p = first; p < end; p++) {
+    size_t awake = first + (size_t)rows->awake[row];
+    while (awake < end && room <= points->sleep[awake])
+        awake++;
+    rows->awake[row] = (int32_t)(awake - first);
+    for (size_t p = first; p < awake; p++) {
         struct poly_touch t;
         if (room > points->sleep[p])
             continue;
@@ -140,7 +145,7 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
                 s->gap = -t.delta;
             continue;
         }
-        points->sleep[p] = room - fmax(-t.delta, 0);
+        points->sleep[p] = room - poly_most(-t.delta, 0);
         if (points->weight[p] > 0) {
             if (friction)
                 poly_release(ledger, &law, m, points->xi[p], points->weight[p]);

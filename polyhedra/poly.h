@@ -49,6 +49,7 @@ struct poly_params {
 #define POLY_ROW_FIELDS(SCALAR, VECTOR)                                                         \
     SCALAR(double, wake, BRC_STATE, "m", "no features listed: travel of a and b to list anew")  \
     SCALAR(double, room, BRC_STATE, "m", "features listed: relative path left to list anew")    \
+    SCALAR(int32_t, awake, BRC_STATE, "1", "points that are looked at; the others sleep")       \
     VECTOR(double, ca, 3, BRC_STATE, "m", "material point of the bond in the frame of a")       \
     VECTOR(double, cb, 3, BRC_STATE, "m", "the same in the frame of b")                         \
     VECTOR(double, na, 3, BRC_STATE, "1", "normal of the face of a, outward, in its frame")     \

@@ -263,12 +263,26 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     brc_set(points->xi[p], 0, 0, 0);
 }
 
+/* Pairs that may touch at once first, then by the path that they are free for. */
+static int compare_features(const void *x, const void *y)
+{
+    const struct poly_feature *f = x, *g = y;
+    double path[2] = {fmax(f->free, 0), fmax(g->free, 0)};
+    if (path[0] != path[1])
+        return path[0] < path[1] ? -1 : 1;
+    if (f->kind != g->kind)
+        return f->kind < g->kind ? -1 : 1;
+    return f->i != g->i ? (f->i > g->i) - (f->i < g->i) : (f->j > g->j) - (f->j < g->j);
+}
+
 /* The row's points become the listed features; those that act keep their state. A point that acts
  * is always listed again, because it is within reach. */
 static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t row,
                           const struct poly_list *list, bool merged)
 {
-    double room = ((const struct poly_rows *)c->model_columns)->room[row];
+    struct poly_rows *rows = c->model_columns;
+    double room = rows->room[row];
+    qsort(list->feature, list->n, sizeof *list->feature, compare_features);
     size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
     size_t n = kept + list->n;
     c->np[row] = (int32_t)kept;
@@ -285,6 +299,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
             set_point(points, next++, &list->feature[k], room);
     }
     c->np[row] = (int32_t)(next - first);
+    rows->awake[row] = (int32_t)kept;
     return 0;
 }
 

@@ -191,7 +191,7 @@ static inline void poly_act(struct brc_ledger *ledger, struct poly_sums *s,
     double arm[3], u[3];
     brc_sub(arm, t->x, m->xa);
     poly_push_normal(s, t, law->kn, arm);
-    poly_stiffen(s->k, friction ? fmax(law->kn, law->kt) : law->kn, arm, m->x);
+    poly_stiffen(s->k, friction ? poly_most(law->kn, law->kt) : law->kn, arm, m->x);
     if (friction || viscous)
         poly_slip(u, m, t->x);
     if (friction) {
@@ -298,7 +298,7 @@ static inline void poly_push_bond(struct poly_wrench *w, double k[3],
     brc_sub(arm, r->x, m->xa);
     poly_push(w, r->f, arm);
     brc_axpy(w->m, r->m, r->n);
-    poly_stiffen(k, fmax(bond->kn, bond->kt), arm, m->x);
+    poly_stiffen(k, poly_most(bond->kn, bond->kt), arm, m->x);
     k[1] += bond->ktheta;
     k[2] += bond->ktheta;
 }
