@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact detection of polyhedra against a brute-force twin: random convex bodies and the packed
  * dodecahedra whose contacts three independent programs have counted. */
-#include "tests/fixture.h"
+#include "tests/model/gas.h"
 #include "tests/model/twin_features.h"
 
 #include "polyhedra/poly.h"
@@ -148,6 +148,73 @@ static void random_bodies_closed(void **state)
         check_random_bodies(*state, "closed", false);
 }
 
+/* --- kept feature lists ------------------------------------------------------------------------
+ */
+
+/* Counts of a row's active contacts against the twin's; cores that overlap are left out. Returns
+ * how many the twin finds. */
+static int check_row(const struct fixture *f, const struct twin_core *core, size_t i, size_t j)
+{
+    struct twin_sum sum = {.closest = HUGE_VAL};
+    if (twin_overlap(&core[i], &core[j]))
+        return 0;
+    twin_compare(&core[i], &core[j], 2e-3, true, &sum);
+    const struct brc_contacts *c = &f->sim.pairs;
+    const struct poly_points *p = c->point_columns;
+    int64_t row = brc_contacts_find(c, (int32_t)i, (int32_t)j);
+    int n[2] = {0, 0};
+    for (int32_t k = 0; row >= 0 && k < c->np[row]; k++) {
+        int32_t point = c->p0[row] + k;
+        n[p->kind[point] == POLY_EDGES] += p->active[point] != 0;
+    }
+    assert_int_equal(n[0], sum.vertex_face);
+    assert_int_equal(n[1], sum.edge_edge);
+    return sum.vertex_face + sum.edge_edge;
+}
+
+static void kept_features_of_a_gas(void **state)
+{
+    /* pairs and features sleep until their motion has used up their gap: at every one of 10 000
+     * steps exactly those act that brute force finds */
+    struct fixture *f = *state;
+    struct brc_convex cell[GAS_N], core;
+    struct twin_core start[GAS_N], now[GAS_N];
+    int n = 0;
+    gas_build(f, cell, brc_registry_find("polyhedra"),
+              "radius: 1 mm; kn: 1e5 N/m; kt: 1e5 N/m; gn: 2000 1/s; features: strict",
+              "dt: 2e-5 s");
+    brc_convex_init(&core);
+    for (size_t i = 0; i < GAS_N; i++) {
+        for (size_t k = 0; k < cell[i].n_faces; k++)
+            cell[i].plane[k].d -= 1e-3;
+        CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &core, cell[i].plane, cell[i].n_faces,
+                                                 f->sim.bodies.x0[i], 0.1));
+        twin_core_from(&start[i], &core);
+        twin_core_from(&now[i], &core);
+        brc_convex_free(&cell[i]);
+    }
+    for (int step = 0; step < 10000; step++) {
+        fixture_steps(f, 1);
+        for (size_t i = 0; i < GAS_N; i++)
+            move_core(f, i, &start[i], &now[i]);
+        for (size_t i = 0; i < GAS_N; i++)
+            for (size_t j = i + 1; j < GAS_N; j++) {
+                double d[3];
+                brc_sub(d, f->sim.bodies.x[j], f->sim.bodies.x[i]);
+                if (brc_norm(d) < 0.0175) /* twice the reach of a box */
+                    n += check_row(f, now, i, j);
+            }
+        gas_reflect(f);
+    }
+    print_message("gas: %d feature contacts in 10000 steps, all found\n", n);
+    assert_true(n > 1000);
+    for (size_t i = 0; i < GAS_N; i++) {
+        twin_core_free(&start[i]);
+        twin_core_free(&now[i]);
+    }
+    brc_convex_free(&core);
+}
+
 /* --- the file ----------------------------------------------------------------------------------
  */
 
@@ -281,6 +348,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(random_bodies_strict),
         FIXTURE_TEST(random_bodies_closed),
+        FIXTURE_TEST(kept_features_of_a_gas),
         FIXTURE_TEST(dodecahedra_are_counted_right),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
