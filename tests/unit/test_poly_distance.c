@@ -124,7 +124,9 @@ static void test_edges_against_sampling(void **state)
 static void test_parallel_is_relative(void **state)
 {
     (void)state;
-    for (double size = 1; size > 1e-9; size *= 1e-3) {
+    const double sizes[] = {1, 1e-3, 1e-6};
+    for (int k = 0; k < 3; k++) {
+        double size = sizes[k];
         const double e[4][3] = {{-size, 0, 0},
                                 {size, 0, 0},
                                 {-size, -1e-4 * size, 0.1 * size},
@@ -204,8 +206,8 @@ static void random_contact(size_t a, struct solid_pose *pa, size_t b, struct sol
     solid_rotation(pa->q, seed);
     solid_rotation(pb->q, seed);
     solid_place(pa, &shapes, a);
-    for (double r = 4; count == 0 && r > 0; r -= 0.2 * radius) {
-        brc_scale(pb->x, dir, r);
+    for (int i = 0; count == 0; i++) {
+        brc_scale(pb->x, dir, 4 - 0.2 * i * radius);
         solid_place(pb, &shapes, b);
         struct poly_pair p = solid_pair(&shapes, a, pa, b, pb, radius);
         pair_energy(&p, POLY_MERGED, f, m, &count);
