@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time of a step of 1000 bonded Voronoi cells with the values of Table 1 of gt12, at the start and
+/* Time of a step of the 1000 bonded Voronoi cells of cases/gt12_block.yaml, at the start and
  * at about half of the peak load in unconfined compression, one core. Lines of "name value unit",
  * user CPU time. */
 #include "polyhedra/poly.h"
