@@ -262,7 +262,7 @@ static void set_in_motion(struct fixture *f, const struct brc_model *model, cons
         double v[3], w[3];
         for (int k = 0; k < 3; k++) {
             v[k] = speed * fixture_draw(f);
-            w[k] = speed / H * fixture_draw(f);
+            w[k] = model->flags & BRC_MODEL_ROTATES ? speed / H * fixture_draw(f) : 0;
         }
         fixture_velocity(f, i, v, w);
     }
@@ -320,7 +320,8 @@ static void nothing_is_lost_in_breaking(void **state)
                           f->sim.events.table.n, brc_ledger_residual(l), l->damage / l->boundary,
                           l->friction / l->boundary, l->local_damping / l->boundary,
                           l->mass_scaling / l->boundary);
-            assert_true(f->sim.events.table.n > 0);
+            if (strlen(s.breaking) > 0)
+                assert_true(f->sim.events.table.n > 0);
             CHECK_NEAR(brc_ledger_residual(l), 0, 0.01, 0);
         }
 }
