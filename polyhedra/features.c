@@ -272,3 +272,39 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
     }
     return list_edges(ctx, l, sides, p, rule, skin);
 }
+
+/* --- feet ------------------------------------------------------------------------------------- */
+
+static double margin_of(const struct poly_core *c, const struct poly_foot *foot, const double q[3])
+{
+    int32_t index = foot->place >> 2;
+    double margin = foot->s, along[3], d[3];
+    if ((foot->place & 3) == POLY_ON_FACE) {
+        const struct poly_face *f = &c->face[index];
+        for (int32_t k = f->first; k < f->first + f->n_sides; k++)
+            margin = poly_least(margin, c->side[k].off - brc_dot(c->side[k].m, q));
+    } else if ((foot->place & 3) == POLY_ON_EDGE) {
+        const struct poly_edge *e = &c->edge[index];
+        double t = poly_along_edge(c, index, q, along), length = brc_norm(along);
+        margin = poly_least(margin, poly_least(t, 1 - t) * length);
+        for (int k = 0; k < 2; k++) {
+            const struct poly_side *side = &c->side[e->side[k]];
+            margin = poly_least(margin, brc_dot(side->m, q) - side->off);
+        }
+    } else {
+        brc_sub(d, q, c->vertex[index]);
+        for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
+            const int32_t *end = c->end[c->star[k]];
+            brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
+            margin = poly_least(margin, -brc_dot(d, along) / brc_norm(along));
+        }
+    }
+    return margin;
+}
+
+double poly_find_foot(struct poly_foot *foot, const struct poly_core *c, const double q[3],
+                      int32_t place)
+{
+    poly_foot_walk(foot, c, q, place);
+    return margin_of(c, foot, q);
+}

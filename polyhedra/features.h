@@ -132,34 +132,10 @@ static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], co
     brc_cross(t->c, arm, t->g);
 }
 
-/* How far q may move before its foot leaves the place that it has; 0 inside the core. */
-static inline double poly_margin(const struct poly_core *c, const struct poly_foot *foot,
-                                 const double q[3])
-{
-    int32_t index = foot->place >> 2;
-    double margin = foot->s, along[3], d[3];
-    if ((foot->place & 3) == POLY_ON_FACE) {
-        const struct poly_face *f = &c->face[index];
-        for (int32_t k = f->first; k < f->first + f->n_sides; k++)
-            margin = poly_least(margin, c->side[k].off - brc_dot(c->side[k].m, q));
-    } else if ((foot->place & 3) == POLY_ON_EDGE) {
-        const struct poly_edge *e = &c->edge[index];
-        double t = poly_along_edge(c, index, q, along), length = brc_norm(along);
-        margin = poly_least(margin, poly_least(t, 1 - t) * length);
-        for (int k = 0; k < 2; k++) {
-            const struct poly_side *side = &c->side[e->side[k]];
-            margin = poly_least(margin, brc_dot(side->m, q) - side->off);
-        }
-    } else {
-        brc_sub(d, q, c->vertex[index]);
-        for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
-            const int32_t *end = c->end[c->star[k]];
-            brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
-            margin = poly_least(margin, -brc_dot(d, along) / brc_norm(along));
-        }
-    }
-    return margin;
-}
+/* Finds the foot of q, from a remembered place on; returns how far q may move before the foot
+ * leaves its place, 0 inside the core. */
+double poly_find_foot(struct poly_foot *foot, const struct poly_core *c, const double q[3],
+                      int32_t place);
 
 /* Distance of q to the core at a place that its foot has for sure. */
 static inline void poly_foot_known(struct poly_foot *foot, const struct poly_core *c, int32_t place,
@@ -212,9 +188,8 @@ static inline bool poly_touch_core(struct poly_touch *t, const struct poly_pair 
     if (*margin > 0) {
         poly_foot_known(&foot, c, *place, q);
     } else {
-        poly_foot_walk(&foot, c, q, *place);
+        *margin = poly_find_foot(&foot, c, q, *place);
         *place = foot.place;
-        *margin = poly_margin(c, &foot, q);
     }
     t->delta = p->rest - foot.s;
     if (foot.s >= p->rest)

@@ -55,8 +55,10 @@ void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, s
 
 /* A broken bond: its force is gone at once. What it had stored, less the work that its last force
  * would have done in this step, is dissipated. */
-static void break_bond(struct brc_sim *sim, size_t row, const struct poly_bond *bond,
-                       const struct poly_bond_result *r, const struct poly_motion *m)
+__attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size_t row,
+                                                       const struct poly_bond *bond,
+                                                       const struct poly_bond_result *r,
+                                                       const struct poly_motion *m)
 {
     struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
@@ -112,11 +114,11 @@ static inline void law_of_pair(struct poly_spring_law *law, const struct brc_sim
 __attribute__((always_inline)) static inline void
 points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct poly_sums *s,
            const struct poly_motion *m, const enum poly_rule rule, const bool friction,
-           const bool viscous, const bool accounts)
+           const bool viscous)
 {
     struct brc_contacts *c = &sim->pairs;
     struct poly_points *points = c->point_columns;
-    struct brc_ledger *ledger = accounts ? &sim->ledger : NULL;
+    struct brc_ledger *ledger = sim->run.ledger ? &sim->ledger : NULL;
     struct poly_spring_law law;
     struct poly_pair pair;
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
@@ -167,7 +169,7 @@ static inline bool keeps_list(const struct brc_sim *sim, const struct poly_rows 
 
 __attribute__((always_inline)) static inline void
 pairs_loop(struct brc_sim *sim, struct poly_state *st, const enum poly_rule rule,
-           const bool friction, const bool viscous, const bool accounts)
+           const bool friction, const bool viscous)
 {
     struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
@@ -190,47 +192,43 @@ pairs_loop(struct brc_sim *sim, struct poly_state *st, const enum poly_rule rule
         if (c->status[row] == BRC_INTACT)
             bond_row(sim, st, row, &m, &bond, s.k);
         if (c->np[row] > 0)
-            points_row(sim, st, row, &s, &m, rule, friction, viscous, accounts);
+            points_row(sim, st, row, &s, &m, rule, friction, viscous);
         poly_finish_row(c, row, &s, &bond, &m);
         poly_store_k(c, row, s.k);
-        if (accounts)
+        if (sim->run.ledger)
             poly_account(&sim->ledger, rows, row, &s, &bond, &m, viscous);
     }
 }
 
-#define PAIRS_LOOP(rule, friction, viscous, accounts)                              \
-    static void loop_##rule##_##friction##viscous##accounts(struct brc_sim *sim,   \
-                                                            struct poly_state *st) \
-    {                                                                              \
-        pairs_loop(sim, st, rule, friction, viscous, accounts);                    \
+/* flatten: everything is inlined, so that the constants reach the last branch. */
+#define PAIRS_LOOP(rule, friction, viscous)                                                       \
+    __attribute__((flatten)) static void loop_##rule##_##friction##viscous(struct brc_sim *sim,   \
+                                                                           struct poly_state *st) \
+    {                                                                                             \
+        pairs_loop(sim, st, rule, friction, viscous);                                             \
     }
-#define PAIRS_LOOPS(rule)     \
-    PAIRS_LOOP(rule, 0, 0, 0) \
-    PAIRS_LOOP(rule, 0, 0, 1) \
-    PAIRS_LOOP(rule, 0, 1, 0) \
-    PAIRS_LOOP(rule, 0, 1, 1) \
-    PAIRS_LOOP(rule, 1, 0, 0) \
-    PAIRS_LOOP(rule, 1, 0, 1) \
-    PAIRS_LOOP(rule, 1, 1, 0) \
-    PAIRS_LOOP(rule, 1, 1, 1)
+#define PAIRS_LOOPS(rule)  \
+    PAIRS_LOOP(rule, 0, 0) \
+    PAIRS_LOOP(rule, 0, 1) \
+    PAIRS_LOOP(rule, 1, 0) \
+    PAIRS_LOOP(rule, 1, 1)
 PAIRS_LOOPS(POLY_CLOSED)
 PAIRS_LOOPS(POLY_STRICT)
 PAIRS_LOOPS(POLY_MERGED)
 
-#define PAIRS_TABLE(rule)                                                              \
-    {                                                                                  \
-        loop_##rule##_000, loop_##rule##_001, loop_##rule##_010, loop_##rule##_011,    \
-            loop_##rule##_100, loop_##rule##_101, loop_##rule##_110, loop_##rule##_111 \
+#define PAIRS_TABLE(rule)                                                      \
+    {                                                                          \
+        loop_##rule##_00, loop_##rule##_01, loop_##rule##_10, loop_##rule##_11 \
     }
 
 poly_loop *poly_choose_pairs(const struct brc_sim *sim)
 {
-    static poly_loop *const loops[3][8] = {PAIRS_TABLE(POLY_CLOSED), PAIRS_TABLE(POLY_STRICT),
+    static poly_loop *const loops[3][4] = {PAIRS_TABLE(POLY_CLOSED), PAIRS_TABLE(POLY_STRICT),
                                            PAIRS_TABLE(POLY_MERGED)};
     const struct poly_params *p = poly_params_of(sim);
     int friction = p->mu > 0 && p->kt > 0;
     int viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
-    return loops[p->features][4 * friction + 2 * viscous + (sim->run.ledger ? 1 : 0)];
+    return loops[p->features][2 * friction + viscous];
 }
 
 void poly_forces(struct brc_sim *sim, void *state)
