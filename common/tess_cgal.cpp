@@ -328,30 +328,65 @@ int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t
     return copy_cells(ctx, t, seed, out);
 }
 
+/* A mesh in an order of its own, since CGAL's follows addresses: vertices by place, triangles by
+ * their vertices, each from its lowest one. */
+struct Sorted_mesh {
+    using Place = std::pair<double, double>;
+    struct Face {
+        Mesh::Face_handle handle;
+        int first; /* CGAL's number of the lowest vertex */
+    };
+    std::map<Place, int32_t> vertices;
+    std::map<std::array<int32_t, 3>, Face> faces;
+    std::map<Mesh::Face_handle, int32_t> numbers;
+
+    explicit Sorted_mesh(const Mesh &mesh);
+};
+
+Sorted_mesh::Sorted_mesh(const Mesh &mesh)
+{
+    for (auto v = mesh.finite_vertices_begin(); v != mesh.finite_vertices_end(); ++v)
+        vertices.emplace(Place(v->point().x(), v->point().y()), 0);
+    int32_t n = 0;
+    for (auto &vertex : vertices)
+        vertex.second = n++;
+    for (auto f = mesh.finite_faces_begin(); f != mesh.finite_faces_end(); ++f) {
+        std::array<int32_t, 3> corner;
+        for (int k = 0; k < 3; k++) {
+            const auto &p = f->vertex(k)->point();
+            corner[static_cast<size_t>(k)] = vertices.at(Place(p.x(), p.y()));
+        }
+        auto lowest = std::min_element(corner.begin(), corner.end());
+        int first = static_cast<int>(lowest - corner.begin());
+        std::rotate(corner.begin(), lowest, corner.end());
+        if (f->is_in_domain())
+            faces.emplace(corner, Face{f, first});
+    }
+    n = 0;
+    for (const auto &face : faces)
+        numbers.emplace(face.second.handle, n++);
+}
+
 int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_cgal_mesh *out)
 {
-    std::map<Mesh::Vertex_handle, int32_t> vertices;
-    std::map<Mesh::Face_handle, int32_t> faces;
-    for (auto f = mesh.finite_faces_begin(); f != mesh.finite_faces_end(); ++f)
-        if (f->is_in_domain())
-            faces.emplace(f, static_cast<int32_t>(faces.size()));
-    out->vertex =
-        static_cast<double(*)[2]>(brc_alloc(ctx, mesh.number_of_vertices(), sizeof *out->vertex));
-    out->triangle = static_cast<int32_t(*)[3]>(brc_alloc(ctx, faces.size(), sizeof *out->triangle));
-    out->neighbour =
-        static_cast<int32_t(*)[3]>(brc_alloc(ctx, faces.size(), sizeof *out->neighbour));
+    Sorted_mesh sorted(mesh);
+    size_t n = sorted.faces.size(), n_vertices = sorted.vertices.size();
+    out->vertex = static_cast<double(*)[2]>(brc_alloc(ctx, n_vertices, sizeof *out->vertex));
+    out->triangle = static_cast<int32_t(*)[3]>(brc_alloc(ctx, n, sizeof *out->triangle));
+    out->neighbour = static_cast<int32_t(*)[3]>(brc_alloc(ctx, n, sizeof *out->neighbour));
     if (!out->vertex || !out->triangle || !out->neighbour)
         return BRC_ERR_MEMORY;
-    for (auto v = mesh.finite_vertices_begin(); v != mesh.finite_vertices_end(); ++v) {
-        out->vertex[out->n_vertices][0] = v->point().x();
-        out->vertex[out->n_vertices][1] = v->point().y();
-        vertices.emplace(v, static_cast<int32_t>(out->n_vertices++));
+    for (const auto &[place, number] : sorted.vertices) {
+        out->vertex[number][0] = place.first;
+        out->vertex[number][1] = place.second;
+        out->n_vertices++;
     }
-    for (const auto &[f, number] : faces) {
+    for (const auto &[corner, face] : sorted.faces) {
         for (int k = 0; k < 3; k++) {
-            auto other = faces.find(f->neighbor(k));
-            out->triangle[number][k] = vertices.at(f->vertex(k));
-            out->neighbour[number][k] = other == faces.end() ? -1 : other->second;
+            auto other = sorted.numbers.find(face.handle->neighbor((face.first + k) % 3));
+            out->triangle[out->n_triangles][k] = corner[static_cast<size_t>(k)];
+            out->neighbour[out->n_triangles][k] =
+                other == sorted.numbers.end() ? -1 : other->second;
         }
         out->n_triangles++;
     }
