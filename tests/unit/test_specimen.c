@@ -63,7 +63,7 @@ static void test_grid(void **state)
     struct brc_specimen_params p = PARAMS("shape", "box", "grains", "grid", "size",
                                           "8 cm, 6 cm, 4 cm", "cells", "8, 6, 4", "jitter", "0.5");
     struct brc_specimen s, other;
-    double low[3], high[3], step = 0;
+    double low[3], high[3], step = 0, least = 1, most = 0;
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
     assert_int_equal(s.facets.n_cells, 8 * 6 * 4);
     CHECK_NEAR(s.domain_volume, 192e-6, 0, 1e-14);
@@ -75,6 +75,8 @@ static void test_grid(void **state)
             double x = s.facets.seed[i][k] / 0.01;
             at[k] = (int)x;
             CHECK_BETWEEN(x - at[k], 0.25, 0.75);
+            least = fmin(least, x - at[k]);
+            most = fmax(most, x - at[k]);
         }
         seen[at[0] + 8 * (at[1] + 6 * at[2])]++;
         if (i > 0) {
@@ -85,6 +87,8 @@ static void test_grid(void **state)
     }
     for (int i = 0; i < 192; i++)
         assert_int_equal(seen[i], 1);
+    CHECK_BETWEEN(least, 0.25, 0.26);
+    CHECK_BETWEEN(most, 0.74, 0.75);
     /* numbered along a curve: the next cell is a neighbour */
     CHECK_BETWEEN(step, 0.005, 0.015);
     brc_specimen_extent(&s, low, high);
@@ -180,7 +184,7 @@ static void test_packing(void **state)
     (void)state;
     struct brc_specimen_params p = PARAMS("height", "40 mm", "cache", "off");
     struct brc_specimen s;
-    double mean = 0, least = 1, most = 0;
+    double mean = 0, least = 1, most = 0, step = 0;
     clock_t start = clock();
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
     check_packing(&s, (double)(clock() - start) / CLOCKS_PER_SEC);
@@ -191,7 +195,12 @@ static void test_packing(void **state)
         mean += d / 1997;
         least = fmin(least, d);
         most = fmax(most, d);
+        double r[3] = {0, 0, 0};
+        if (i > 0)
+            brc_sub(r, s.facets.seed[i], s.facets.seed[i - 1]);
+        step += brc_norm(r) / 1996;
     }
+    CHECK_BETWEEN(step, 4e-3, 8e-3);
     CHECK_NEAR(mean, 5e-3, 0, 1e-3);
     CHECK_BETWEEN(least, 4e-3, 4.01e-3);
     CHECK_BETWEEN(most, 5.99e-3, 6e-3);
@@ -288,6 +297,10 @@ static void test_bad_input(void **state)
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "diameter_min");
     p = PARAMS("diameter", "3 mm", "height", "1 mm");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "fit");
+    /* far too many spheres: some centre stays in the cell of another */
+    p = PARAMS("diameter", "20 mm", "height", "15 mm", "diameter_min", "1 mm", "diameter_max",
+               "9 mm", "count", "400", "cache", "off");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "sphere ");
     p = PARAMS("shape", "box", "grains", "grid", "size", "4 cm, 2 cm, 2 cm", "cells", "2, 2, 2");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "cube");
 }

@@ -3,6 +3,7 @@
  */
 #include "tests/near.h"
 
+#include "common/complex.h"
 #include "common/tess.h"
 #include "common/vec.h"
 
@@ -86,6 +87,14 @@ static void free_pack(struct pack *p)
     free(p->radius);
 }
 
+static double height_over(const struct brc_convex *domain, int32_t face, const double x[3])
+{
+    const struct brc_plane *plane = domain->plane;
+    while (plane->id != face)
+        plane++;
+    return brc_dot(plane->n, x) - plane->d;
+}
+
 /* Makes the facets and checks what every partition must fulfil. */
 static void check_partition(struct pack *p, bool is_laguerre, double closure)
 {
@@ -104,6 +113,8 @@ static void check_partition(struct pack *p, bool is_laguerre, double closure)
         double r[3], x[3];
         brc_sub(r, f->centroid[i], f->seed[a]);
         assert_true(brc_dot(r, f->normal[i]) > 0 || is_laguerre);
+        for (size_t k = f->first[i]; b < 0 && k < f->first[i + 1]; k++)
+            CHECK_NEAR(height_over(&p->domain, f->face[i], f->vertex[f->loop[k]]), 0, 6e-17, 0);
         if (b < 0)
             continue;
         /* a facet is where the powers of its two seeds are equal */
@@ -221,6 +232,34 @@ static void test_hexagons(void **state)
         check_partition(&p, false, 1e-7);
         free_pack(&p);
     }
+}
+
+/* Vertices of a prism that were moved a little return to its edges and corners. */
+static void test_settle(void **state)
+{
+    (void)state;
+    struct pack p;
+    struct brc_complex c;
+    memset(&p, 0, sizeof p);
+    make_domain(&p, 0.05, 30);
+    brc_complex_init(&c, 1);
+    for (size_t v = 0; v < p.domain.n_vertices; v++) {
+        double x[3];
+        for (int k = 0; k < 3; k++)
+            x[k] = p.domain.vertex[v][k] + 1e-11 * (uniform() - 0.5);
+        CHECK_OK(&ctx, brc_complex_add_vertex(&ctx, &c, x));
+    }
+    for (size_t f = 0; f < p.domain.n_faces; f++) {
+        size_t first = p.domain.first[f];
+        struct brc_complex_facet facet = {{0, -1}, p.domain.plane[f].id, 0, 0, {0, 0, 0}};
+        facet.n = (int32_t)(p.domain.first[f + 1] - first);
+        CHECK_OK(&ctx, brc_complex_add_facet(&ctx, &c, &facet, p.domain.loop + first));
+    }
+    CHECK_OK(&ctx, brc_complex_settle(&ctx, &c, &p.domain));
+    for (size_t v = 0; v < p.domain.n_vertices; v++)
+        CHECK_NEAR_ARRAY(c.vertex[v], p.domain.vertex[v], 3, 1e-15, 0);
+    brc_complex_free(&c);
+    free_pack(&p);
 }
 
 static void test_small_facets(void **state)
@@ -421,6 +460,7 @@ int main(void)
         cmocka_unit_test(test_exact_grid),
         cmocka_unit_test(test_small_jitter),
         cmocka_unit_test(test_hexagons),
+        cmocka_unit_test(test_settle),
         cmocka_unit_test(test_small_facets),
         cmocka_unit_test(test_one_and_two_cells),
         cmocka_unit_test(test_bad_seeds),
