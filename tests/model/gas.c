@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tests/model/gas.h"
+#include "gas.h"
 
 static const double BOX = 0.045, SPEED = 1;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tests/model/twin_features.h"
+#include "twin_features.h"
 
 #include "common/vec.h"
 
