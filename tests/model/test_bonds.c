@@ -92,6 +92,63 @@ static void shear(void **state)
     }
 }
 
+/* Area of the face of a cell on a facet after erosion by R, by clipping. */
+static double eroded_face(struct fixture *f, size_t cell, int32_t facet)
+{
+    const struct brc_facets *s = &f->specimen.facets;
+    struct brc_plane planes[64];
+    struct brc_convex core;
+    size_t n = s->cell_first[cell + 1] - s->cell_first[cell];
+    double area = 0, unused[3];
+    assert_true(n <= 64);
+    brc_facets_cell_planes(s, cell, planes);
+    for (size_t i = 0; i < n; i++)
+        planes[i].d -= R;
+    brc_convex_init(&core);
+    CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &core, planes, n, s->centre[cell], 10 * H));
+    for (size_t i = 0; i < core.n_faces; i++)
+        if (core.plane[i].id == facet)
+            area = brc_polygon_area(core.vertex, core.loop + core.first[i],
+                                    core.first[i + 1] - core.first[i], core.plane[i].n, unused);
+    brc_convex_free(&core);
+    return area;
+}
+
+static void area_is_the_mean_of_two_eroded_faces(void **state)
+{
+    /* a Voronoi pack: the faces of the two sides differ */
+    struct fixture *f = *state;
+    char all[512];
+    const double u = 1e-6;
+    snprintf(all, sizeof all, "%sbt: 0 GPa; torsion: off; strain_length: gap; area: eroded", POLY);
+    fixture_grid(f, 3, 3, 3, H, 0.8);
+    fixture_free_sim(f, brc_registry_find("polyhedra"), all, "");
+    const struct brc_facets *s = &f->specimen.facets;
+    const double zero[3] = {0, 0, 0}, about[3] = {H, H, H};
+    for (size_t i = 0; i < f->sim.bodies.n; i++) { /* a uniform stretch: every bond opens */
+        double v[3];
+        brc_sub(v, f->sim.bodies.x[i], about);
+        brc_scale(v, v, u / H);
+        fixture_velocity(f, i, v, zero);
+    }
+    fixture_carry(f, 1);
+    int n_differ = 0;
+    for (size_t row = 0; row < f->sim.pairs.n; row++) {
+        int32_t facet = f->sim.pairs.facet[row], a = f->sim.pairs.a[row], b = f->sim.pairs.b[row];
+        if (facet < 0)
+            continue;
+        double ea = eroded_face(f, (size_t)a, facet), eb = eroded_face(f, (size_t)b, facet), d[3];
+        brc_sub(d, f->sim.bodies.x0[b], f->sim.bodies.x0[a]);
+        double opening = brc_dot(d, s->normal[facet]) * u / H;
+        double area = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+        /* displacements of 1e-7 m or more in places of 3 cm */
+        CHECK_NEAR(-brc_dot(f->sim.pairs.f[row], s->normal[facet]), B_N * area * opening / (2 * R),
+                   1e-6, 1e-6);
+        n_differ += area > 0 && fabs(ea / eb - 1) > 0.05;
+    }
+    assert_true(n_differ > 10);
+}
+
 static void torsion(void **state)
 {
     struct fixture *f = *state;
@@ -446,6 +503,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(tension),
         FIXTURE_TEST(shear),
+        FIXTURE_TEST(area_is_the_mean_of_two_eroded_faces),
         FIXTURE_TEST(torsion),
         FIXTURE_TEST(breaking),
         FIXTURE_TEST(options_of_breaking),
