@@ -183,6 +183,14 @@ int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
     return build_adjacency(ctx, c);
 }
 
+int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < c->n; i++)
+        used += (size_t)c->np[i];
+    return 4 * c->points.n > 5 * used + 64 ? brc_contacts_compact(ctx, c) : 0;
+}
+
 uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed)
 {
     uint64_t hash = brc_table_hash(&c->table, seed);

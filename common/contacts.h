@@ -62,6 +62,8 @@ int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t 
 int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b);
 /* Closes gaps between the point ranges, so that p0 is the running sum of np. */
 int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c);
+/* Compacts when a fifth of the points' memory has been left behind by ranges that moved. */
+int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c);
 /* After the tables have been replaced by saved, compact ones: n, p0 and the rows of each body. */
 int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c);
 /* Hash of rows and points, independent of how the ranges lie in memory. */

@@ -26,6 +26,8 @@ const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scal
 
 /* steps between two looks at whether the stable limit must be estimated again */
 enum { LIMIT_STEPS = 50 };
+/* steps between two looks at the memory that moved point ranges have left behind */
+enum { TIDY_STEPS = 100 };
 /* growth of the largest sum k / m that calls for a new estimate */
 static const double LIMIT_GROWTH = 1.05;
 
@@ -295,6 +297,10 @@ int brc_sim_step(struct brc_sim *sim)
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (sim->events.table.n > events)
         BRC_TRY(sim->model.after_break(sim, sim->state, events));
+    if (sim->step % TIDY_STEPS == 0) {
+        BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->pairs));
+        BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->platens));
+    }
     return brc_rig_sample(sim);
 }
 
