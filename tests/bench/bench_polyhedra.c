@@ -2,34 +2,13 @@
 /* Time of a step of the 1000 bonded Voronoi cells of cases/gt12_block.yaml, at the start and
  * at about half of the peak load in unconfined compression, one core. Lines of "name value unit",
  * user CPU time. */
+#include "bench.h"
+
 #include "polyhedra/poly.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
+#include <math.h>
 
 extern const struct brc_model brc_model_polyhedra;
-
-static void must(struct brc_context *ctx, int code)
-{
-    if (code == 0)
-        return;
-    fprintf(stderr, "%s\n", ctx->message);
-    exit(1);
-}
-
-static double cpu_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void set(struct brc_context *ctx, struct brc_param_list list, void *values, const char *key,
-                const char *text)
-{
-    must(ctx, brc_params_set(ctx, list, values, "bench", key, text, "bench_polyhedra"));
-}
 
 static void count(void *user, const struct poly_active *active)
 {

@@ -1,36 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Time of vgcm's force loop a local point and step, one core: undamaged, and through failure. Lines
  * of "name value unit", user CPU time. */
-#include "common/sim.h"
+#include "bench.h"
+
 #include "vgcm/vgcm.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
 
 extern const struct brc_model brc_model_vgcm;
-
-static void must(struct brc_context *ctx, int code)
-{
-    if (code == 0)
-        return;
-    fprintf(stderr, "%s\n", ctx->message);
-    exit(1);
-}
-
-static double cpu_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void set(struct brc_context *ctx, struct brc_param_list list, void *values, const char *key,
-                const char *text)
-{
-    must(ctx, brc_params_set(ctx, list, values, "bench", key, text, "bench_vgcm"));
-}
 
 static size_t count_points(const struct brc_sim *sim)
 {
