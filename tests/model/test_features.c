@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+static const double RADIUS = 1e-3;
 static const char DODECAHEDRA[] = "tests/data/dodecahedra-512.txt";
 
 /* Active feature contacts of the simulation, by vertices and by edges. */
@@ -67,55 +68,74 @@ static void random_body(struct fixture *f, const double centre[3], double radius
     }
 }
 
-static void check_random_bodies(struct fixture *f, const char *rule, bool strict)
-{
-    const double radius = 1e-3, stiffness = 1e8;
-    struct brc_convex cell[2], core[2];
+/* Two random bodies, their cores as they are at the start and now. */
+struct duel {
     struct twin_core start[2], now[2];
+};
+
+static void begin_duel(struct fixture *f, struct duel *d, const char *rule)
+{
+    struct brc_convex cell[2], core;
     char settings[128];
-    int n_touching = 0, n_edges = 0;
+    brc_convex_init(&core);
     for (int i = 0; i < 2; i++) {
         brc_convex_init(&cell[i]);
-        brc_convex_init(&core[i]);
-        random_body(f, (double[3]){i * 0.02, 0, 0}, radius, &cell[i], &core[i]);
-        twin_core_from(&start[i], &core[i]);
-        twin_core_from(&now[i], &core[i]);
+        random_body(f, (double[3]){i * 0.02, 0, 0}, RADIUS, &cell[i], &core);
+        twin_core_from(&d->start[i], &core);
+        twin_core_from(&d->now[i], &core);
     }
     fixture_loose(f, cell, NULL, 2);
     snprintf(settings, sizeof settings, "radius: 1 mm; mu: 0; gn: 0 1/s; features: %s", rule);
     fixture_free_sim(f, brc_registry_find("polyhedra"), settings, "dt: 1e-9 s");
+    for (int i = 0; i < 2; i++)
+        brc_convex_free(&cell[i]);
+    brc_convex_free(&core);
+}
+
+/* Turns both at random and puts the second at a random place near the first; false when the cores
+ * overlap. */
+static bool place_duel(struct fixture *f, struct duel *d)
+{
+    struct brc_bodies *b = &f->sim.bodies;
+    double phi[3], n[3], old[4], q[4];
+    for (size_t i = 0; i < 2; i++) {
+        fixture_draw_unit(f, phi);
+        brc_scale(phi, phi, 3 * fixture_draw(f));
+        brc_quat_from_rotation(q, phi);
+        memcpy(old, b->q[i], sizeof old);
+        brc_quat_mul(b->q[i], q, old);
+    }
+    fixture_draw_unit(f, n);
+    b->x[1][0] = 10; /* apart first, so that nothing is remembered of the last trial */
+    fixture_forces(f);
+    fixture_list(f);
+    assert_int_equal(f->sim.pairs.n, 0);
+    brc_copy(b->x[1], b->x[0]);
+    brc_axpy(b->x[1], 1.3e-2 + 3e-3 * fixture_draw(f), n);
+    for (size_t i = 0; i < 2; i++)
+        move_core(f, i, &d->start[i], &d->now[i]);
+    return !twin_overlap(&d->now[0], &d->now[1]);
+}
+
+static void check_random_bodies(struct fixture *f, const char *rule, bool strict)
+{
+    const double stiffness = 1e8;
+    struct duel d;
+    int n_touching = 0, n_edges = 0, vertices, edges;
+    begin_duel(f, &d, rule);
     for (int trial = 0; trial < 500; trial++) {
-        struct brc_bodies *b = &f->sim.bodies;
-        double phi[3], n[3], old[4];
-        for (size_t i = 0; i < 2; i++) {
-            double q[4];
-            fixture_draw_unit(f, phi);
-            brc_scale(phi, phi, 3 * fixture_draw(f));
-            brc_quat_from_rotation(q, phi);
-            memcpy(old, b->q[i], sizeof old);
-            brc_quat_mul(b->q[i], q, old);
-        }
-        fixture_draw_unit(f, n);
-        b->x[1][0] = 10; /* apart first, so that nothing is remembered of the last trial */
-        fixture_forces(f);
-        fixture_list(f);
-        assert_int_equal(f->sim.pairs.n, 0);
-        brc_copy(b->x[1], b->x[0]);
-        brc_axpy(b->x[1], 1.3e-2 + 3e-3 * fixture_draw(f), n);
-        for (size_t i = 0; i < 2; i++)
-            move_core(f, i, &start[i], &now[i]);
-        if (twin_overlap(&now[0], &now[1]))
+        if (!place_duel(f, &d))
             continue;
         fixture_list(f);
         fixture_forces(f);
         struct twin_sum sum = {.closest = HUGE_VAL};
-        twin_compare(&now[0], &now[1], 2 * radius, strict, &sum);
-        int vertices, edges;
+        twin_compare(&d.now[0], &d.now[1], 2 * RADIUS, strict, &sum);
         count_active(f, &vertices, &edges);
         if (strict) {
             assert_int_equal(vertices, sum.vertex_face);
             assert_int_equal(edges, sum.edge_edge);
         }
+        const struct brc_bodies *b = &f->sim.bodies;
         double force[3], moment[3], size = stiffness * (brc_norm(sum.overlap) + 1e-6), arm[3];
         brc_scale(force, sum.overlap, stiffness);
         brc_cross(arm, b->x[1], force);
@@ -129,10 +149,8 @@ static void check_random_bodies(struct fixture *f, const char *rule, bool strict
     }
     assert_true(n_touching > 60 && n_edges > 20);
     for (int i = 0; i < 2; i++) {
-        twin_core_free(&start[i]);
-        twin_core_free(&now[i]);
-        brc_convex_free(&cell[i]);
-        brc_convex_free(&core[i]);
+        twin_core_free(&d.start[i]);
+        twin_core_free(&d.now[i]);
     }
 }
 
