@@ -282,7 +282,8 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
 {
     struct poly_rows *rows = c->model_columns;
     double room = rows->room[row];
-    qsort(list->feature, list->n, sizeof *list->feature, compare_features);
+    if (list->n > 1)
+        qsort(list->feature, list->n, sizeof *list->feature, compare_features);
     size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
     size_t n = kept + list->n;
     c->np[row] = (int32_t)kept;
