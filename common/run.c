@@ -113,9 +113,31 @@ int brc_run_make_folder(struct brc_context *ctx, const char *path)
     return 0;
 }
 
+/* The folder, or the nearest one above it that is there, must take files. */
+static int check_writable(struct brc_context *ctx, const char *dir)
+{
+    char path[PATH_SIZE];
+    struct stat status;
+    BRC_TRY(in_folder(ctx, dir, "", path));
+    while (stat(path, &status) != 0) {
+        char *slash = strrchr(path, '/');
+        if (slash == path || !slash)
+            snprintf(path, sizeof path, slash ? "/" : ".");
+        else
+            *slash = '\0';
+    }
+    if (!S_ISDIR(status.st_mode))
+        BRC_FAIL(ctx, BRC_ERR_IO, "%s is no folder; choose another with -o", path);
+    if (access(path, W_OK | X_OK) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write to the folder %s: %s; choose another with -o", path,
+                 strerror(errno));
+    return 0;
+}
+
 int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced)
 {
     char path[PATH_SIZE];
+    BRC_TRY(check_writable(ctx, dir));
     BRC_TRY(in_folder(ctx, dir, "state.h5", path));
     bool has_state = access(path, F_OK) == 0;
     if (is_resumed && !has_state)
@@ -131,31 +153,36 @@ int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resum
     return 0;
 }
 
-/* The log is locked while the run lasts, so that no second run writes here. */
+/* The log is locked while the run lasts, so that no second run writes here. Its content stays. */
 static int open_log(struct run *r)
 {
     char path[PATH_SIZE];
     BRC_TRY(in_folder(r->ctx, r->order->dir, "log", path));
-    r->log = fopen(path, r->order->is_resumed ? "a" : "a+");
+    r->log = fopen(path, "a");
     if (!r->log)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     if (fcntl(fileno(r->log), F_SETLK, &lock) != 0)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
                  r->order->dir);
-    if (!r->order->is_resumed && ftruncate(fileno(r->log), 0) != 0)
-        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty %s: %s", path, strerror(errno));
     return 0;
 }
 
-static int remove_old(struct run *r)
+/* The case takes its place first: on a full disk that fails, and the old results are still there.
+ */
+static int replace_old(struct run *r)
 {
     char path[PATH_SIZE];
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "case.yaml", path));
+    BRC_TRY(brc_output_text(r->ctx, path, brc_case_text(&r->order->job->file)));
     for (int i = 0; i < N_RESULT_FILES; i++) {
         BRC_TRY(in_folder(r->ctx, r->order->dir, result_files[i], path));
         if (unlink(path) != 0 && errno != ENOENT)
             BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot remove %s: %s", path, strerror(errno));
     }
+    if (ftruncate(fileno(r->log), 0) != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty the log in %s: %s", r->order->dir,
+                 strerror(errno));
     return 0;
 }
 
@@ -225,9 +252,7 @@ static int load(struct run *r)
     int code = brc_job_same(r->ctx, saved, r->parameters);
     free(saved);
     BRC_TRY(code);
-    BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra));
-    note(r, "resumed at step %" PRId64, r->sim.step);
-    return 0;
+    return brc_h5_load(r->ctx, path, &r->sim, &extra);
 }
 
 /* ---- step loop ----------------------------------------------------------------------------- */
@@ -370,24 +395,23 @@ static void note_header(struct run *r)
     note(r, "%s", r->parameters);
 }
 
+/* Everything that can be refused is refused before the folder is touched. */
 static int prepare(struct run *r)
 {
     const struct brc_run_order *o = r->order;
-    char path[PATH_SIZE];
     BRC_TRY(brc_run_check_folder(r->ctx, o->dir, o->is_resumed, o->is_forced));
-    BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
-    BRC_TRY(open_log(r));
     r->parameters = brc_job_text(r->ctx, o->job, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
     BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_job_params(o->job, o->model), o->specimen,
                            &o->job->test, &o->job->run));
+    BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
+    BRC_TRY(open_log(r));
+    BRC_TRY(o->is_resumed ? load(r) : replace_old(r));
     note_header(r);
     if (o->is_resumed)
-        return load(r);
-    BRC_TRY(remove_old(r));
-    BRC_TRY(in_folder(r->ctx, o->dir, "case.yaml", path));
-    return brc_output_text(r->ctx, path, brc_case_text(&o->job->file));
+        note(r, "resumed at step %" PRId64, r->sim.step);
+    return 0;
 }
 
 /* After a failure the curves so far are kept for a look; the last saved state stays. */
