@@ -79,6 +79,9 @@ int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const ch
                      struct brc_param_list list, void *values);
 /* Where a section was opened, NULL when neither the file nor an override has it. */
 const struct brc_case_place *brc_case_find_section(const struct brc_case *c, const char *section);
+/* The entry that gives a key its value, NULL when it has its default. */
+const struct brc_case_entry *brc_case_find_entry(const struct brc_case *c, const char *section,
+                                                 const char *key, struct brc_param_list list);
 /* "file.yaml:12", "file.yaml" for line 0, or "--set" for an override; returns where. */
 const char *brc_case_where(const struct brc_case *c, int line, bool is_override,
                            char where[BRC_CASE_WHERE_SIZE]);

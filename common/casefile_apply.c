@@ -33,6 +33,17 @@ static const char *resolve_key(const struct brc_case_entry *e, struct brc_param_
     return is_short ? e->parent : e->key;
 }
 
+const struct brc_case_entry *brc_case_find_entry(const struct brc_case *c, const char *section,
+                                                 const char *key, struct brc_param_list list)
+{
+    for (size_t i = c->n; i > 0; i--) { /* the last one holds */
+        const struct brc_case_entry *e = &c->entries[i - 1];
+        if (strcmp(e->section, section) == 0 && strcmp(resolve_key(e, list), key) == 0)
+            return e;
+    }
+    return NULL;
+}
+
 /* Line of another entry of the file that means the same key, 0 when there is none. */
 static int find_twin(const struct brc_case *c, size_t i, struct brc_param_list list)
 {

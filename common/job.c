@@ -165,3 +165,45 @@ int brc_job_same(struct brc_context *ctx, const char *saved, const char *now)
                  "resume with the version that wrote it");
     return 0;
 }
+
+/* ---- places of keys ------------------------------------------------------------------------ */
+
+/* Does text start with "section.key" of the list? key gets the key. */
+static bool starts_with_key(const char *text, const char *section, struct brc_param_list list,
+                            char key[BRC_CASE_KEY_SIZE])
+{
+    size_t n = strlen(section);
+    if (strncmp(text, section, n) != 0 || text[n] != '.')
+        return false;
+    size_t length = strspn(text + n + 1, "abcdefghijklmnopqrstuvwxyz0123456789_");
+    snprintf(key, BRC_CASE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
+    return brc_params_find(list, key) != NULL;
+}
+
+/* The first section.key in text; false when there is none. */
+static bool find_key(const char *text, const char **section, struct brc_param_list *list,
+                     char key[BRC_CASE_KEY_SIZE])
+{
+    for (const char *c = text; *c; c++) {
+        bool is_start = c == text || strchr(" '(", c[-1]);
+        for (int i = 0; is_start && brc_job_section(i, section, list); i++)
+            if (starts_with_key(c, *section, *list, key))
+                return true;
+    }
+    return false;
+}
+
+void brc_job_locate(struct brc_context *ctx, const struct brc_job *job)
+{
+    char key[BRC_CASE_KEY_SIZE], where[BRC_CASE_WHERE_SIZE], message[sizeof ctx->message];
+    const char *section;
+    struct brc_param_list list;
+    bool is_input = ctx->code == BRC_ERR_INPUT || ctx->code == BRC_ERR_GEOMETRY;
+    if (!is_input || !find_key(ctx->message, &section, &list, key))
+        return;
+    const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, key, list);
+    const struct brc_case_place *s = brc_case_find_section(&job->file, section);
+    brc_case_where(&job->file, e ? e->line : s ? s->line : 0, e && e->is_override, where);
+    snprintf(message, sizeof message, "%s: %.760s", where, ctx->message);
+    memcpy(ctx->message, message, sizeof message);
+}

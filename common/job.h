@@ -38,6 +38,10 @@ char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
  * key. */
 int brc_job_same(struct brc_context *ctx, const char *saved, const char *now);
 
+/* Puts "file:line: " before a message about bad input that names a key as section.key: where the
+ * case gives that key, or its section, its value. For failures after brc_job_read. */
+void brc_job_locate(struct brc_context *ctx, const struct brc_job *job);
+
 /* The sections that every case may have, and those of the models: name and list of number i, false
  * past the last. */
 bool brc_job_section(int i, const char **name, struct brc_param_list *list);

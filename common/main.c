@@ -5,6 +5,7 @@
 #include "run.h"
 
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -320,8 +321,10 @@ static int act_run(struct brc_context *ctx, const struct options *o)
 {
     struct brc_job job;
     int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
-    if (code == 0)
+    if (code == 0) {
         code = run_job(ctx, o, &job);
+        brc_job_locate(ctx, &job);
+    }
     brc_job_free(&job);
     brc_comm_end();
     if (code == BRC_ERR_INTERRUPTED)
@@ -358,8 +361,10 @@ static int act_compare(struct brc_context *ctx, const struct options *o)
 {
     struct brc_job job;
     int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
-    if (code == 0)
+    if (code == 0) {
         code = compare_job(ctx, o, &job);
+        brc_job_locate(ctx, &job);
+    }
     brc_job_free(&job);
     if (code == BRC_ERR_INTERRUPTED)
         tell_resume(ctx, "compare", o);
@@ -429,6 +434,7 @@ int main(int argc, char **argv)
         puts("breccia " BRC_VERSION);
         return 0;
     }
+    signal(SIGXFSZ, SIG_IGN); /* a file over the allowed size is a failed write like any other */
     int code = act(&ctx, argv + 1);
     if (code != 0)
         fprintf(stderr, "breccia: %s\n", ctx.message);

@@ -401,14 +401,27 @@ static void list_keys(struct brc_param_list list, char *buffer, size_t size)
     }
 }
 
+/* What is allowed, where the message does not say it yet. */
+static void add_range(struct brc_context *ctx, const struct brc_param *p)
+{
+    size_t used = strlen(ctx->message);
+    if (p->range && !strstr(ctx->message, "allowed"))
+        snprintf(ctx->message + used, sizeof ctx->message - used, "; allowed %s%s%s", p->range,
+                 strcmp(p->unit, "1") == 0 ? "" : " ", strcmp(p->unit, "1") == 0 ? "" : p->unit);
+}
+
 int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
                    const char *section, const char *key, const char *text, const char *where)
 {
     char place[PLACE_SIZE], keys[400];
     const struct brc_param *p = brc_params_find(list, key);
     make_place(place, where, section, key);
-    if (p)
-        return set_value(ctx, p, values, text, place);
+    if (p) {
+        int code = set_value(ctx, p, values, text, place);
+        if (code == BRC_ERR_INPUT)
+            add_range(ctx, p);
+        return code;
+    }
     const char *nearest = brc_params_nearest(list, key);
     list_keys(list, keys, sizeof keys);
     BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: unknown key; allowed %s%s%s%s", place, keys,

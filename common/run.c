@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run.h"
 
+#include "blowup.h"
 #include "io_h5.h"
 #include "plot.h"
 
@@ -299,6 +300,7 @@ static int step_loop(struct run *r)
         if (r->n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
             r->n_active = count_active(&sim->pairs) + count_active(&sim->platens);
         BRC_TRY(brc_sim_step(sim));
+        BRC_TRY(brc_blowup_energy(sim));
         r->counts.contact_steps += (double)r->n_active;
         if (brc_progress_is_due(r->order->progress))
             report(r, false);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sim.h"
 
+#include "blowup.h"
 #include "grid.h"
 #include "integrate.h"
 #include "vec.h"
@@ -81,12 +82,8 @@ static int check_travel(struct brc_sim *sim)
     bool stale = false;
     for (size_t i = 0; i < b->n; i++) {
         double moved = b->travel[i] - b->travel_listed[i];
-        if (!(moved < 4 * sim->skin)) /* not a number included */
-            BRC_FAIL(sim->ctx, BRC_ERR_BLOWUP,
-                     "step %lld: body %zu moved by %g m at once, at %g %g %g m; use a smaller time "
-                     "step (run.dt_margin), more mass scaling (run.mass_margin) or slower loading "
-                     "(test.rate)",
-                     (long long)sim->step, i, moved, b->x[i][0], b->x[i][1], b->x[i][2]);
+        if (!(moved < BRC_BLOWUP_SKINS * sim->skin)) /* not a number included */
+            return brc_blowup_travel(sim);
         stale |= moved > 0.5 * sim->skin;
     }
     return stale ? update_candidates(sim) : 0;
@@ -295,6 +292,8 @@ int brc_sim_step(struct brc_sim *sim)
     else if (sim->step % LIMIT_STEPS == 0)
         BRC_TRY(update_dt(sim));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
+    if (!isfinite(sim->ledger.kinetic))
+        return brc_blowup_number(sim);
     if (sim->events.table.n > events)
         BRC_TRY(sim->model.after_break(sim, sim->state, events));
     if (sim->step % TIDY_STEPS == 0) {

@@ -67,12 +67,25 @@ static double inscribed_radius(struct brc_context *ctx, struct eroder *e,
     double low = 0;
     for (int i = 0; i < 40; i++) {
         double middle = 0.5 * (low + high);
-        if (erode(ctx, e, f, cell, middle, f->centre[cell]) == 0 && e->core.n_faces > 0)
+        if (erode(ctx, e, f, cell, middle, f->centre[cell]) == 0 && e->core.n_faces >= 4)
             low = middle;
         else
             high = middle;
     }
     return low;
+}
+
+/* The same for the grain with the smallest one, starting from a radius that some grain lacks. */
+static double smallest_inscribed(struct brc_context *ctx, struct eroder *e,
+                                 const struct brc_facets *f, double radius)
+{
+    for (size_t i = 0; i < f->n_cells; i++) {
+        bool is_kept = brc_facets_cell(ctx, f, i, &e->cell) == 0 &&
+                       erode(ctx, e, f, i, radius, f->centre[i]) == 0 && e->core.n_faces >= 4;
+        if (!is_kept)
+            radius = inscribed_radius(ctx, e, f, i, radius);
+    }
+    return radius;
 }
 
 /* The core in the body frame. */
@@ -112,10 +125,11 @@ static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct eroder 
     brc_scale(b->true_inertia[i], moment, p->density);
     BRC_TRY(erode(ctx, e, f, i, p->radius, b->x[i]));
     if (e->core.n_faces < 4)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "polyhedra.radius = %g m erodes grain %zu (volume %g m3) away: it needs a radius "
-                 "below %g m, its inscribed sphere's; use a smaller radius or larger grains",
-                 p->radius, i, b->volume[i], inscribed_radius(ctx, e, f, i, p->radius));
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "polyhedra.radius = %g m erodes grain %zu (volume %g m3) away; all grains keep a core "
+            "below %g m, the smallest inscribed sphere: use a smaller radius or larger grains",
+            p->radius, i, b->volume[i], smallest_inscribed(ctx, e, f, p->radius));
     BRC_TRY(add_core(ctx, &st->shapes, e, b->x[i], b->q[i]));
     b->reach[i] = poly_shapes_reach(&st->shapes, i) + p->radius;
     return 0;
