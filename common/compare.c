@@ -69,13 +69,6 @@ static int choose_models(struct compare *c)
     return 0;
 }
 
-static bool has_state(const struct child *child)
-{
-    char path[PATH_SIZE + 16];
-    snprintf(path, sizeof path, "%s/state.h5", child->dir);
-    return access(path, F_OK) == 0;
-}
-
 /* ---- children ------------------------------------------------------------------------------ */
 
 /* The child's whole life. It never returns; the parent reads the outcome. */
@@ -90,7 +83,7 @@ static void run_child(const struct compare *c, const struct child *child)
         .model = child->model,
         .specimen = c->order->specimen,
         .dir = child->dir,
-        .is_resumed = c->order->is_resumed && has_state(child),
+        .is_resumed = c->order->is_resumed && brc_run_has_begun(child->dir),
         .is_forced = c->order->is_forced,
         .progress = &progress,
     };
@@ -283,7 +276,7 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
     c->order = order;
     int code = choose_models(c);
     for (int i = 0; i < c->n && code == 0; i++) {
-        bool is_resumed = order->is_resumed && has_state(&c->child[i]);
+        bool is_resumed = order->is_resumed && brc_run_has_begun(c->child[i].dir);
         code = brc_run_check_folder(ctx, c->child[i].dir, is_resumed, order->is_forced);
         label[i] = c->child[i].model->name;
     }

@@ -44,6 +44,7 @@ struct run {
     FILE *log;
     size_t n_active; /* contacts with a spring at the last count */
     double cpu_before, wall_before;
+    double saved_at; /* s, wall clock at the last save */
     const char *ended_by;
 };
 
@@ -135,22 +136,28 @@ static int check_writable(struct brc_context *ctx, const char *dir)
     return 0;
 }
 
-int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced)
+static bool is_there(const char *dir, const char *name)
 {
     char path[PATH_SIZE];
+    return snprintf(path, sizeof path, "%s/%s", dir, name) < PATH_SIZE && access(path, F_OK) == 0;
+}
+
+bool brc_run_has_begun(const char *dir)
+{
+    return is_there(dir, "log");
+}
+
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced)
+{
     BRC_TRY(check_writable(ctx, dir));
-    BRC_TRY(in_folder(ctx, dir, "state.h5", path));
-    bool has_state = access(path, F_OK) == 0;
-    if (is_resumed && !has_state)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s holds no state.h5 to resume; leave out --resume", dir);
-    for (int i = 0; i < N_RESULT_FILES && !is_resumed && !is_forced; i++) {
-        BRC_TRY(in_folder(ctx, dir, result_files[i], path));
-        if (access(path, F_OK) == 0)
+    if (is_resumed && !brc_run_has_begun(dir))
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s holds no run to resume; leave out --resume", dir);
+    for (int i = 0; i < N_RESULT_FILES && !is_resumed && !is_forced; i++)
+        if (is_there(dir, result_files[i]))
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "%s already holds results (%s); go on with --resume, replace them with "
                      "--force, or choose another folder with -o",
                      dir, result_files[i]);
-    }
     return 0;
 }
 
@@ -240,7 +247,9 @@ static int save(struct run *r)
     struct brc_state_part part = counts_part(r);
     const struct brc_h5_extra extra = {texts, sizeof texts / sizeof texts[0], &part};
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
-    return brc_h5_save(r->ctx, path, &r->sim, &extra);
+    BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra));
+    r->saved_at = brc_progress_clock();
+    return 0;
 }
 
 static int load(struct run *r)
@@ -290,12 +299,21 @@ static const char *ended_by(const struct brc_sim *sim)
     return brc_run_is_stopped() ? "signal" : NULL;
 }
 
+/* When a state is saved changes no bit of it. */
+static bool save_is_due(const struct run *r)
+{
+    const struct brc_run_params *p = &r->sim.run;
+    int64_t step = r->sim.step;
+    if (p->checkpoint_steps > 0 && step % p->checkpoint_steps == 0)
+        return true;
+    return p->checkpoint > 0 && brc_progress_clock() - r->saved_at >= p->checkpoint;
+}
+
 static int step_loop(struct run *r)
 {
     struct brc_sim *sim = &r->sim;
-    int every = sim->run.checkpoint_steps;
     r->cpu_before = cpu_now();
-    r->wall_before = brc_progress_clock();
+    r->wall_before = r->saved_at = brc_progress_clock();
     while (!(r->ended_by = ended_by(sim))) {
         if (r->n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
             r->n_active = count_active(&sim->pairs) + count_active(&sim->platens);
@@ -304,7 +322,7 @@ static int step_loop(struct run *r)
         r->counts.contact_steps += (double)r->n_active;
         if (brc_progress_is_due(r->order->progress))
             report(r, false);
-        if (every > 0 && sim->step % every == 0)
+        if (save_is_due(r))
             BRC_TRY(save(r));
     }
     return save(r);
@@ -409,10 +427,13 @@ static int prepare(struct run *r)
                            &o->job->test, &o->job->run));
     BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
     BRC_TRY(open_log(r));
-    BRC_TRY(o->is_resumed ? load(r) : replace_old(r));
+    bool has_state = o->is_resumed && is_there(o->dir, "state.h5");
+    BRC_TRY(has_state ? load(r) : replace_old(r));
     note_header(r);
-    if (o->is_resumed)
+    if (has_state)
         note(r, "resumed at step %" PRId64, r->sim.step);
+    else if (o->is_resumed)
+        note(r, "nothing was saved before the stop: started anew");
     return 0;
 }
 

@@ -11,7 +11,7 @@ struct brc_run_order {
     const struct brc_model *model;
     const struct brc_specimen *specimen;
     const char *dir; /* where results go; made when it is missing */
-    bool is_resumed; /* go on from dir/state.h5 */
+    bool is_resumed; /* go on from dir/state.h5; from the start when the run has not saved one */
     bool is_forced;  /* replace results that are there */
     struct brc_progress *progress;
     int progress_run; /* number of this run's line */
@@ -22,6 +22,8 @@ struct brc_run_order {
  * state and ends in BRC_ERR_INTERRUPTED; curves are written after any failure of a started run. */
 int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out);
 
+/* A run has been started in dir, by its log. */
+bool brc_run_has_begun(const char *dir);
 /* Fails when dir holds results and neither is_resumed nor is_forced allows it. */
 int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced);
 /* From now on SIGINT, SIGTERM, SIGHUP and a lost reader wait: each run of the process saves its

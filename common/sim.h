@@ -29,8 +29,9 @@ enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
     FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")               \
     REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                   \
     INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")          \
-    INT(checkpoint_steps, "20000", "[0, 2000000000]",                                            \
-        "steps between saved states; 0: at the end only")
+    REAL(checkpoint, "s", "5 min", "[0, inf)",                                                   \
+         "elapsed time between saved states; 0: none by time")                                   \
+    INT(checkpoint_steps, "0", "[0, 2000000000]", "steps between saved states; 0: none by steps")
 
 struct brc_run_params {
     BRC_PARAM_MEMBERS(BRC_RUN_PARAMS)

@@ -75,7 +75,7 @@ cmp -s case.yaml "results/case/$model/case.yaml" ||
     { echo "FAILED: case.yaml is no copy"; failures=$((failures + 1)); }
 hash=$(grep state_hash "results/case/$model/summary.json")
 expect 3 "already holds results" "$breccia" run case.yaml
-expect 3 "no state.h5 to resume" "$breccia" run case.yaml -o other --resume
+expect 3 "holds no run to resume" "$breccia" run case.yaml -o other --resume
 expect 3 "the case says 'specimen.seed = 2'" "$breccia" run case.yaml --resume --set specimen.seed=2
 : >file
 expect 4 "is no folder" "$breccia" run case.yaml -o file/x

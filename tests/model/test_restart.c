@@ -72,8 +72,60 @@ static void test_restart(void **state)
     }
 }
 
+/* Steps of the window, and how far each of them is continued. */
+enum { WINDOW = 40, AHEAD = 5, MOST_STEPS = 2000 };
+
+/* Two simulations of one case; events of the first when the window begins. */
+static void start_pair(struct fixture *f, struct fixture *g, const struct brc_model *model)
+{
+    const struct setting *s = &settings[0];
+    struct fixture *both[2] = {f, g};
+    for (int i = 0; i < 2; i++) {
+        fixture_specimen(both[i],
+                         "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
+                         "jitter: 0.6; seed: 3");
+        fixture_sim(both[i], model, "", s->test, s->run);
+    }
+    while (f->sim.events.table.n < 10 && f->sim.step < MOST_STEPS)
+        fixture_steps(f, 1);
+}
+
+/* Every step of an avalanche is saved, loaded into another simulation, which holds what an earlier
+ * load left there, and continued. */
+static void test_every_step_of_an_avalanche(void **state)
+{
+    struct fixture *f = *state, *g;
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/breccia-test-%ld-every.h5", (long)getpid());
+    for (int i = 0; i < fixture_n_models(); i++) {
+        const struct brc_model *model = fixture_model(i);
+        uint64_t hash[AHEAD] = {0};
+        int breaking = 0;
+        if (fixture_is(model, "null"))
+            continue;
+        assert_int_equal(fixture_open((void **)&g), 0);
+        start_pair(f, g, model);
+        for (int step = 0; step < WINDOW + AHEAD; step++) {
+            size_t events = f->sim.events.table.n;
+            assert_true(step < AHEAD || brc_sim_hash(&f->sim) == hash[step % AHEAD]);
+            CHECK_OK(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &nothing));
+            CHECK_OK(&g->ctx, brc_h5_load(&g->ctx, path, &g->sim, &nothing));
+            fixture_steps(g, AHEAD);
+            hash[step % AHEAD] = brc_sim_hash(&g->sim);
+            fixture_steps(f, 1);
+            breaking += f->sim.events.table.n > events;
+        }
+        print_message("%s: %d of %d steps with breaks, from step %lld\n", model->name, breaking,
+                      WINDOW + AHEAD, (long long)f->sim.step - WINDOW - AHEAD);
+        assert_true(breaking >= 10);
+        fixture_close((void **)&g);
+    }
+    unlink(path);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {FIXTURE_TEST(test_restart)};
+    const struct CMUnitTest tests[] = {FIXTURE_TEST(test_restart),
+                                       FIXTURE_TEST(test_every_step_of_an_avalanche)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
