@@ -110,21 +110,34 @@ static void find_near(struct side *s, double reach)
     }
 }
 
+/* Path of q before it can touch a face of the core c. */
+static double path_to_face(const struct poly_core *c, int32_t face, const double q[3],
+                           enum poly_rule rule, double rest)
+{
+    struct poly_foot foot;
+    double highest;
+    poly_highest(c, q, &highest);
+    if (highest <= 0)
+        return 0;
+    poly_foot_closed(&foot, c, face, q);
+    double path = foot.s - rest;
+    int32_t out = rule == POLY_STRICT ? poly_outside(c, &c->face[face], q) : -1;
+    return out < 0 ? path : poly_most(path, brc_dot(c->side[out].m, q) - c->side[out].off);
+}
+
 /* Faces of the other core within reach of a vertex; all of them when it is inside. */
 static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct side *s, bool of_b,
-                      int32_t v, double rest, double reach)
+                      int32_t v, const struct poly_pair *p, enum poly_rule rule, double skin)
 {
     double q[3], highest;
     poly_to_body(q, s->r, s->x, s->v[v]);
     poly_highest(s->other, q, &highest);
     for (int32_t f = 0; f < s->other->n_faces; f++) {
-        struct poly_foot foot;
-        if (fabs(s->height[v * s->other->n_faces + f]) >= reach && highest > 0)
+        if (fabs(s->height[v * s->other->n_faces + f]) >= p->rest + skin && highest > 0)
             continue;
-        poly_foot_closed(&foot, s->other, f, q);
-        if (foot.s < reach || highest <= 0)
-            BRC_TRY(
-                add_vertex(ctx, l, of_b, v, f, POLY_NONE_NEAR, highest <= 0 ? 0 : foot.s - rest));
+        double path = path_to_face(s->other, f, q, rule, p->rest);
+        if (path < skin)
+            BRC_TRY(add_vertex(ctx, l, of_b, v, f, POLY_NONE_NEAR, path));
     }
     return 0;
 }
@@ -147,58 +160,52 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
                          const struct poly_pair *p, enum poly_rule rule, double skin)
 {
     bool of_b = s->own == &p->b;
-    double reach = p->rest + skin, range = sqrt(p->rest * p->rest + p->ell * p->ell) + skin;
+    double range = sqrt(p->rest * p->rest + p->ell * p->ell) + skin;
     for (int32_t v = 0; v < s->own->n_vertices; v++) {
         if (!s->near_vertex[v])
             continue;
         if (rule != POLY_MERGED) {
-            BRC_TRY(list_faces(ctx, l, s, of_b, v, p->rest, reach));
+            BRC_TRY(list_faces(ctx, l, s, of_b, v, p, rule, skin));
             continue;
         }
         double q[3], h;
         struct poly_foot foot;
         poly_to_body(q, s->r, s->x, s->v[v]);
         poly_foot_walk(&foot, s->other, q, poly_place(poly_highest(s->other, q, &h), POLY_ON_FACE));
-        if (foot.s < reach)
+        if (foot.s < p->rest + skin)
             BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near_vertex(s->other, q, range),
                                foot.s - p->rest));
     }
     return 0;
 }
 
-/* Distance of a point to an edge with the unit direction dir. */
-static double point_to_edge(const double x[3], const double e[2][3], const double dir[3])
+/* From a point to the closest point of an edge with the unit direction dir. */
+static void to_edge(double r[3], const double x[3], const double e[2][3], const double dir[3])
 {
-    double r[3], along[3];
-    brc_sub(r, x, e[0]);
+    double along[3], back[3];
     brc_sub(along, e[1], e[0]);
-    brc_axpy(r, -poly_clamp(brc_dot(r, dir), brc_dot(along, dir)), dir);
-    return brc_norm(r);
+    brc_sub(back, x, e[0]);
+    brc_sub(r, e[0], x);
+    brc_axpy(r, poly_clamp(brc_dot(back, dir), brc_dot(along, dir)), dir);
 }
 
-/* The foot on edge p of the common perpendicular with edge q is outside the given end of p by an
- * overhang: the distance of the end from the plane of line q and the perpendicular. A relative path
- * of the bodies by s, which turns them by at most s / radius, changes it by at most
- * s + (distance of the end to q) (s / radius) (1 + 2.2 / sine). Returns the path that may bring the
- * foot to the end. */
+/* Returns the path that may bring the foot of the common perpendicular on edge p to the given end
+ * of p, which it is beyond. With unit directions a (of p, out of this end) and b (of q), and r from
+ * the end to a point of q, the foot is beyond the end while r . out > 0, where out = a - (a . b) b.
+ * A relative path of the bodies by s, which turns them by at most s / radius, changes r by at most
+ * s and out by at most s / radius. */
 static double path_to_end(const double p[2][3], const double q[2][3], int end, double radius,
                           double skin)
 {
-    double a[3], b[3], m[3], out[3], r[3];
+    double a[3], b[3], out[3], r[3];
     brc_sub(a, p[end], p[1 - end]);
     brc_sub(b, q[1], q[0]);
     brc_normalise(a, a);
     brc_normalise(b, b);
-    brc_cross(m, a, b);
-    double sine = brc_normalise(m, m);
-    if (sine <= 10 * skin / radius)
-        return 0;
-    brc_cross(out, b, m);
-    brc_sub(r, q[0], p[end]);
-    /* the plane's normal is along the edge's way out of this end */
-    double overhang = brc_dot(r, out) * (brc_dot(out, a) < 0 ? -1 : 1);
-    double arm = point_to_edge(p[end], q, b) + skin;
-    return overhang / (1 + arm / radius * (1 + 2.2 / sine));
+    brc_copy(out, a);
+    brc_axpy(out, -brc_dot(a, b), b);
+    to_edge(r, p[end], q, b);
+    return brc_dot(r, out) / (brc_norm(out) + (brc_norm(r) + skin) / radius);
 }
 
 /* Relative path that may bring both feet inside their edges. */
@@ -211,31 +218,39 @@ static double path_to_inside(const double ends[4][3], double radius, double skin
     return most;
 }
 
+/* Relative path before edges i and j can touch; radius as for path_to_end, paths up to skin. */
+static double path_to_edges(const struct poly_pair *p, int32_t i, int32_t j, enum poly_rule rule,
+                            double radius, double skin)
+{
+    double ends[4][3];
+    for (int k = 0; k < 2; k++) {
+        brc_copy(ends[k], p->va[p->a.end[i][k]]);
+        brc_copy(ends[2 + k], p->vb[p->b.end[j][k]]);
+    }
+    double path = poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) - p->rest;
+    if (rule == POLY_CLOSED || path >= skin)
+        return path;
+    return poly_most(path, path_to_inside(ends, radius, skin));
+}
+
 static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct side sides[2],
                       const struct poly_pair *p, enum poly_rule rule, double skin)
 {
-    const struct side *a = &sides[0], *b = &sides[1];
-    double radius = poly_least(a->radius, b->radius);
-    for (int32_t i = 0; i < a->own->n_edges; i++) {
-        if (!a->near_edge[i])
-            continue;
-        double ends[4][3];
-        brc_copy(ends[0], a->v[a->own->end[i][0]]);
-        brc_copy(ends[1], a->v[a->own->end[i][1]]);
-        for (int32_t j = 0; j < b->own->n_edges; j++) {
-            if (!b->near_edge[j])
+    double radius = poly_least(sides[0].radius, sides[1].radius);
+    for (int32_t i = 0; i < p->a.n_edges; i++)
+        for (int32_t j = 0; j < p->b.n_edges && sides[0].near_edge[i]; j++) {
+            if (!sides[1].near_edge[j])
                 continue;
-            brc_copy(ends[2], b->v[b->own->end[j][0]]);
-            brc_copy(ends[3], b->v[b->own->end[j][1]]);
-            double free = poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) - p->rest;
-            if (rule != POLY_CLOSED && free < skin)
-                free = poly_most(free, path_to_inside(ends, radius, skin));
             struct poly_feature f = {
-                .free = free, .i = i, .j = j, .near = POLY_NONE_NEAR, .kind = POLY_EDGES};
-            if (free < skin)
+                .free = path_to_edges(p, i, j, rule, radius, skin),
+                .i = i,
+                .j = j,
+                .near = POLY_NONE_NEAR,
+                .kind = POLY_EDGES,
+            };
+            if (f.free < skin)
                 BRC_TRY(poly_list_add(ctx, l, &f));
         }
-    }
     return 0;
 }
 
@@ -271,6 +286,19 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
         BRC_TRY(list_vertices(ctx, l, &sides[k], p, rule, skin));
     }
     return list_edges(ctx, l, sides, p, rule, skin);
+}
+
+double poly_free_path(const struct poly_pair *p, const struct poly_feature *f, enum poly_rule rule,
+                      double most)
+{
+    if (f->kind == POLY_EDGES)
+        return path_to_edges(p, f->i, f->j, rule,
+                             poly_least(core_radius(&p->a), core_radius(&p->b)), most);
+    bool of_b = f->kind == POLY_VERTEX_B;
+    const struct poly_core *c = of_b ? &p->a : &p->b;
+    double q[3];
+    poly_to_body(q, of_b ? p->ra : p->rb, of_b ? p->xa : p->xb, of_b ? p->vb[f->j] : p->va[f->i]);
+    return path_to_face(c, of_b ? f->i : f->j, q, rule, p->rest);
 }
 
 /* --- feet ------------------------------------------------------------------------------------- */

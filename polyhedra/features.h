@@ -49,6 +49,10 @@ int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct pol
  * bodies may come nearer before another pair could touch. */
 int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
                        enum poly_rule rule, double skin, double *allowance);
+/* Relative path of the bodies before a listed pair that is apart can touch; right for paths up to
+ * `most`. Not for the vertices of `merged`, whose touch says it. */
+double poly_free_path(const struct poly_pair *p, const struct poly_feature *f, enum poly_rule rule,
+                      double most);
 
 static inline void poly_to_body(double r[3], const double m[3][3], const double x[3],
                                 const double v[3])

@@ -147,7 +147,10 @@ points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct 
                 s->gap = -t.delta;
             continue;
         }
-        points->sleep[p] = room - poly_most(-t.delta, 0);
+        double path = rule == POLY_MERGED && f.kind != POLY_EDGES
+                          ? -t.delta
+                          : poly_free_path(&pair, &f, rule, room);
+        points->sleep[p] = room - poly_most(path, 0);
         if (points->weight[p] > 0) {
             if (friction)
                 poly_release(ledger, &law, m, points->xi[p], points->weight[p]);

@@ -367,7 +367,36 @@ static void test_coincident_faces(void **state)
 
 /* --- lists ------------------------------------------------------------------------------------ */
 
-/* A listed pair keeps every contact while the bodies move by less than the allowance. */
+/* Moves b by a path of at most `most`, half of it by shift, half by turn; returns the path. */
+static double move_at_random(struct solid_pose *pose, double most, double reach, unsigned *seed)
+{
+    double shift[3], phi[3], turn[4], q[4];
+    for (int k = 0; k < 3; k++) {
+        shift[k] = (solid_uniform(seed) - 0.5) * most / sqrt(3);
+        phi[k] = (solid_uniform(seed) - 0.5) * most / reach / sqrt(3);
+    }
+    brc_add(pose->x, pose->x, shift);
+    brc_quat_from_rotation(turn, phi);
+    memcpy(q, pose->q, sizeof q);
+    brc_quat_mul(pose->q, turn, q);
+    return brc_norm(shift) + reach * brc_norm(phi);
+}
+
+static bool is_listed(const struct poly_list *l, const struct poly_feature *x, enum poly_rule rule)
+{
+    for (size_t n = 0; n < l->n; n++) {
+        const struct poly_feature *y = &l->feature[n];
+        bool i = y->i == x->i, j = y->j == x->j;
+        if (rule == POLY_MERGED && x->kind != POLY_EDGES)
+            i = j = x->kind == POLY_VERTEX_A ? i : j;
+        if (y->kind == x->kind && i && j)
+            return true;
+    }
+    return false;
+}
+
+/* A listed pair keeps every contact while the bodies move by less than the allowance, and no pair
+ * touches before its free path is used up. */
 static void test_lists_are_exact(void **state)
 {
     (void)state;
@@ -376,47 +405,37 @@ static void test_lists_are_exact(void **state)
     struct solid_pose pa = {.v = NULL}, pb = {.v = NULL};
     struct poly_list near = {0}, all = {0};
     unsigned seed = 8;
-    int active_count = 0;
-    for (int trial = 0; trial < 600; trial++) {
+    int n_active = 0, n_free[3] = {0, 0, 0};
+    for (int trial = 0; trial < 6000; trial++) {
         enum poly_rule rule = (enum poly_rule)(trial % 3);
         size_t a = (size_t)(trial % N_CORES), b = (size_t)((trial * 7 + 2) % N_CORES);
-        double allowance, unused, phi[3], turn[4], q[4];
+        double allowance, unused;
         random_contact(a, &pa, b, &pb, radius, 0.3 * solid_uniform(&seed) - 0.1, &seed);
         struct poly_pair p = solid_pair(&shapes, a, &pa, b, &pb, radius);
         CHECK_OK(&ctx, poly_list_features(&ctx, &near, &p, rule, skin, &allowance));
         assert_true(allowance >= skin);
-        /* half of the allowance by shift, half by turn */
-        double reach = poly_shapes_reach(&shapes, b);
-        for (int k = 0; k < 3; k++) {
-            pb.x[k] += (solid_uniform(&seed) - 0.5) * allowance / sqrt(3);
-            phi[k] = (solid_uniform(&seed) - 0.5) * allowance / reach / sqrt(3);
-        }
-        brc_quat_from_rotation(turn, phi);
-        memcpy(q, pb.q, sizeof q);
-        brc_quat_mul(pb.q, turn, q);
+        double path = move_at_random(&pb, solid_uniform(&seed) * allowance,
+                                     poly_shapes_reach(&shapes, b), &seed);
         solid_place(&pb, &shapes, b);
         p = solid_pair(&shapes, a, &pa, b, &pb, radius);
         CHECK_OK(&ctx, poly_list_features(&ctx, &all, &p, rule, 5, &unused));
-        for (size_t k = 0; k < all.n; k++) {
+        for (size_t k = 0; k < all.n + near.n; k++) {
+            struct poly_feature x = k < all.n ? all.feature[k] : near.feature[k - all.n];
+            struct poly_feature start = x;
             struct poly_touch t;
-            struct poly_feature x = all.feature[k];
             uint8_t active = 0;
-            if (!poly_touch(&t, &p, &x, poly_remembered(&x), &active, rule))
-                continue;
-            active_count++;
-            bool listed = false;
-            for (size_t n = 0; n < near.n; n++) {
-                const struct poly_feature *y = &near.feature[n];
-                bool i = y->i == all.feature[k].i, j = y->j == all.feature[k].j;
-                if (rule == POLY_MERGED && x.kind != POLY_EDGES)
-                    listed |= y->kind == x.kind && (x.kind == POLY_VERTEX_A ? i : j);
-                else
-                    listed |= y->kind == x.kind && i && j;
+            bool touches = poly_touch(&t, &p, &x, poly_remembered(&x), &active, rule);
+            n_active += touches;
+            assert_true(!touches || is_listed(&near, &start, rule));
+            if (k >= all.n && start.free > path) {
+                n_free[rule]++;
+                assert_false(touches);
             }
-            assert_true(listed);
         }
     }
-    assert_true(active_count > 1000);
+    print_message("lists: %d contacts, all listed; %d, %d and %d features sleep\n", n_active,
+                  n_free[0], n_free[1], n_free[2]);
+    assert_true(n_active > 20000 && n_free[0] > 2000 && n_free[1] > 500 && n_free[2] > 500);
     poly_list_free(&near);
     poly_list_free(&all);
     free(pa.v);
