@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "bodies.h"
 
+#include "vec.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,4 +35,15 @@ void brc_bodies_free(struct brc_bodies *b)
     brc_table_free(&b->model);
     free(b->model_columns);
     memset(b, 0, sizeof *b);
+}
+
+void brc_bodies_carry(const struct brc_bodies *b, size_t body, const double p[3], double now[3])
+{
+    double arm[3], local[3], m[3][3], m0[3][3];
+    brc_quat_matrix(m, b->q[body]);
+    brc_quat_matrix(m0, b->q0[body]);
+    brc_sub(arm, p, b->x0[body]);
+    brc_mat_mul_t(local, m0, arm);
+    brc_mat_mul(arm, m, local);
+    brc_add(now, b->x[body], arm);
 }

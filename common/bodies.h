@@ -38,5 +38,7 @@ struct brc_bodies {
 int brc_bodies_create(struct brc_context *ctx, struct brc_bodies *b, size_t n_grains,
                       size_t n_platens, struct brc_fieldset model);
 void brc_bodies_free(struct brc_bodies *b);
+/* Where the point of a body that was at p at the start is now. */
+void brc_bodies_carry(const struct brc_bodies *b, size_t body, const double p[3], double now[3]);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State files in HDF5: one dataset a field, of shape (rows, width), with the attributes unit and
- * meaning; texts that tell where the state comes from under /provenance. io_h5.c is the only file
- * with hdf5.h. */
+/* State files in HDF5: one dataset a field, of shape (rows, width), with the attributes unit,
+ * meaning and shape; texts that tell where the state comes from under /provenance. */
 #ifndef BRC_IO_H5_H
 #define BRC_IO_H5_H
 
@@ -14,11 +13,12 @@ struct brc_h5_text {
     const char *name, *text;
 };
 
-/* What is saved beside the simulation: texts, and a part of the caller's own (NULL: none). */
+/* What is saved beside the simulation: texts, and parts of the caller's own. */
 struct brc_h5_extra {
     const struct brc_h5_text *texts;
     int n_texts;
-    struct brc_state_part *part;
+    struct brc_state_part *parts;
+    int n_parts;
 };
 
 /* Writes the whole state with version, compiler, model and state hash. The file appears at path

@@ -125,19 +125,6 @@ struct cracks {
     double area[BRC_N_MODES]; /* m2, broken */
 };
 
-/* Where the point of a body that was at p at the start is now, less p. */
-static void displacement(const struct brc_bodies *b, size_t body, const double p[3], double u[3])
-{
-    double arm[3], local[3], m[3][3], m0[3][3];
-    brc_quat_matrix(m, b->q[body]);
-    brc_quat_matrix(m0, b->q0[body]);
-    brc_sub(arm, p, b->x0[body]);
-    brc_mat_mul_t(local, m0, arm);
-    brc_mat_mul(arm, m, local);
-    brc_add(u, b->x[body], arm);
-    brc_sub(u, u, p);
-}
-
 /* How far the two sides of an inner facet have moved against each other at its centroid. */
 static double facet_opening(const struct brc_sim *sim, size_t facet)
 {
@@ -145,8 +132,8 @@ static double facet_opening(const struct brc_sim *sim, size_t facet)
     double low[3], high[3];
     if (f->cell[facet][1] < 0)
         return 0;
-    displacement(&sim->bodies, (size_t)f->cell[facet][0], f->centroid[facet], low);
-    displacement(&sim->bodies, (size_t)f->cell[facet][1], f->centroid[facet], high);
+    brc_bodies_carry(&sim->bodies, (size_t)f->cell[facet][0], f->centroid[facet], low);
+    brc_bodies_carry(&sim->bodies, (size_t)f->cell[facet][1], f->centroid[facet], high);
     brc_sub(high, high, low);
     return brc_norm(high);
 }

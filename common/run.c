@@ -245,7 +245,7 @@ static int save(struct run *r)
                                         {"parameters", r->parameters},
                                         {"seed", seed}};
     struct brc_state_part part = counts_part(r);
-    const struct brc_h5_extra extra = {texts, sizeof texts / sizeof texts[0], &part};
+    const struct brc_h5_extra extra = {texts, sizeof texts / sizeof texts[0], &part, 1};
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra));
     r->saved_at = brc_progress_clock();
@@ -256,7 +256,7 @@ static int load(struct run *r)
 {
     char path[PATH_SIZE], *saved;
     struct brc_state_part part = counts_part(r);
-    const struct brc_h5_extra extra = {NULL, 0, &part};
+    const struct brc_h5_extra extra = {NULL, 0, &part, 1};
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
     int code = brc_job_same(r->ctx, saved, r->parameters);

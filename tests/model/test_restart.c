@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static const struct brc_h5_extra nothing = {NULL, 0, NULL};
+static const struct brc_h5_extra nothing = {NULL, 0, NULL, 0};
 
 struct setting {
     const char *test, *run;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/h5.h"
 #include "common/io_h5.h"
 #include "tests/fixture.h"
 
@@ -7,7 +8,7 @@
 #include <unistd.h>
 
 static const struct brc_h5_text texts[] = {{"case", "breccia: 1\n# \xc3\xa4\n"}, {"empty", ""}};
-static const struct brc_h5_extra extra = {texts, 2, NULL};
+static const struct brc_h5_extra extra = {texts, 2, NULL, 0};
 
 static void make_path(char path[64])
 {
@@ -107,6 +108,37 @@ static void test_equal_states_give_equal_files(void **state)
     unlink(other);
 }
 
+/* What another program finds: unit, meaning and shape of a field; the kind of number. */
+static void test_fields_describe_themselves(void **state)
+{
+    struct fixture *f = *state;
+    char path[64];
+    struct brc_h5_file file;
+    make_path(path);
+    make_sim(f);
+    save(f, path);
+    CHECK_OK(&f->ctx, brc_h5_open(&f->ctx, path, &file));
+    static const struct {
+        const char *field, *label, *text;
+    } expected[] = {
+        {"bodies/x", "unit", "m"},
+        {"bodies/x", "meaning", "centre of mass"},
+        {"bodies/x", "shape", "(bodies, 3)"},
+        {"pairs/points/u", "unit", "m"},
+        {"pairs/points/u", "shape", "(pairs/points, 1)"},
+        {"scalars/time", "unit", "s"},
+        {"events/mode", "meaning", "0 tension, 1 shear, 2 torsion"},
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+        char *text;
+        CHECK_OK(&f->ctx, brc_h5_get_label(&file, expected[i].field, expected[i].label, &text));
+        assert_string_equal(text, expected[i].text);
+        free(text);
+    }
+    brc_h5_close(&file);
+    unlink(path);
+}
+
 static void fails_to_load(struct fixture *f, const char *path, int code, const char *text)
 {
     CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), code, text);
@@ -194,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(test_round_trip),
+        FIXTURE_TEST(test_fields_describe_themselves),
         FIXTURE_TEST(test_equal_states_give_equal_files),
         FIXTURE_TEST(test_foreign_files),
         FIXTURE_TEST(test_damage),
