@@ -69,6 +69,21 @@ static int choose_models(struct compare *c)
     return 0;
 }
 
+/* Builds each simulation once and drops it, so that what one model refuses ends all before any
+ * folder is touched. */
+static int try_models(const struct compare *c)
+{
+    const struct brc_job *job = c->order->job;
+    for (int i = 0; i < c->n; i++) {
+        struct brc_sim sim;
+        const struct brc_model *model = c->child[i].model;
+        BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_job_params(job, model), c->order->specimen,
+                               &job->test, &job->run));
+        brc_sim_free(&sim);
+    }
+    return 0;
+}
+
 /* ---- children ------------------------------------------------------------------------------ */
 
 /* The child's whole life. It never returns; the parent reads the outcome. */
@@ -280,6 +295,8 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
         code = brc_run_check_folder(ctx, c->child[i].dir, is_resumed, order->is_forced);
         label[i] = c->child[i].model->name;
     }
+    if (code == 0)
+        code = try_models(c);
     if (code == 0)
         code = brc_run_make_folder(ctx, order->dir);
     if (code == 0) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "facets.h"
 
+#include "fields.h"
 #include "grow.h"
 #include "vec.h"
 
@@ -239,4 +240,16 @@ int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, doubl
                  "the cells' volumes sum to %.3g of the domain's volume too much or too little",
                  quality.volume_error);
     return 0;
+}
+
+uint64_t brc_facets_hash(const struct brc_facets *f)
+{
+    const size_t n[4] = {f->n_cells, f->n_facets, f->n_vertices, f->first[f->n_facets]};
+    uint64_t hash = brc_hash_bytes(n, sizeof n, BRC_HASH_SEED);
+    hash = brc_hash_bytes(f->seed, f->n_cells * sizeof *f->seed, hash);
+    hash = brc_hash_bytes(f->radius, f->n_cells * sizeof *f->radius, hash);
+    hash = brc_hash_bytes(f->cell, f->n_facets * sizeof *f->cell, hash);
+    hash = brc_hash_bytes(f->is_contact, f->n_facets * sizeof *f->is_contact, hash);
+    hash = brc_hash_bytes(f->loop, f->first[f->n_facets] * sizeof *f->loop, hash);
+    return brc_hash_bytes(f->vertex, f->n_vertices * sizeof *f->vertex, hash);
 }

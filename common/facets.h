@@ -53,4 +53,7 @@ void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_
 int brc_facets_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
                     struct brc_convex *c);
 
+/* Hash of seeds, cells, facets and vertices: equal specimens have equal ones. */
+uint64_t brc_facets_hash(const struct brc_facets *f);
+
 #endif

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "h5.h"
 
+#include "seal.h"
+
 #include <hdf5.h>
 
 #include <errno.h>
@@ -14,6 +16,8 @@
 _Static_assert(sizeof(hid_t) == sizeof(int64_t), "h5.h keeps handles of HDF5 as int64_t");
 
 enum { PATH_SIZE = 4096, PACK_LEVEL = 4, PACK_ROWS = 1024, CHUNK_BYTES = 1 << 20 };
+/* bytes by which files in memory grow */
+enum { CORE_STEP = 1 << 20 };
 
 static hid_t memory_type(enum brc_type type)
 {
@@ -48,7 +52,8 @@ static hid_t file_type(enum brc_type type)
 
 int brc_h5_write_failed(const struct brc_h5_file *f, const char *what)
 {
-    BRC_FAIL(f->ctx, BRC_ERR_IO, "cannot write %s to %s; is the disk full?", what, f->path);
+    BRC_FAIL(f->ctx, BRC_ERR_MEMORY, "HDF5 cannot take up %s for %s; is the memory exhausted?",
+             what, f->path);
 }
 
 int brc_h5_read_failed(const struct brc_h5_file *f, const char *what)
@@ -77,22 +82,63 @@ static int part_path(struct brc_context *ctx, const char *path, char temporary[P
     return 0;
 }
 
-/* A new file of the format of HDF5 1.10, the structures of which carry checksums. */
-int brc_h5_create(struct brc_context *ctx, const char *path, struct brc_h5_file *f)
+/* A new file in memory: HDF5 crashes when it cannot write to a full disk. In the oldest format:
+ * from 1.8 on the superblock of an image has a wrong checksum. Integrity is the seal's. */
+int brc_h5_create_sealed(struct brc_context *ctx, const char *path, int format,
+                         struct brc_h5_file *f)
 {
-    char temporary[PATH_SIZE];
-    BRC_TRY(part_path(ctx, path, temporary));
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     hid_t how = without_times(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
-    *f = (struct brc_h5_file){ctx, path, H5Fcreate(temporary, H5F_ACC_TRUNC, how, access)};
+    if (format != 0)
+        H5Pset_userblock(how, BRC_SEAL_SIZE);
+    H5Pset_fapl_core(access, CORE_STEP, false);
+    H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+    hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, how, access);
+    *f = (struct brc_h5_file){ctx, path, id, format};
     H5Pclose(access);
     H5Pclose(how);
-    if (f->id < 0)
-        BRC_FAIL(ctx, BRC_ERR_IO,
-                 "cannot create %s: is the folder there, writable and not full, and does no other "
-                 "run use it?",
-                 temporary);
+    return id < 0 ? brc_h5_write_failed(f, "a new file") : 0;
+}
+
+int brc_h5_create(struct brc_context *ctx, const char *path, struct brc_h5_file *f)
+{
+    return brc_h5_create_sealed(ctx, path, 0, f);
+}
+
+/* The bytes of the file without its user block; allocated. */
+static int take_image(const struct brc_h5_file *f, char **image, size_t *n)
+{
+    ssize_t size = H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(f->id, NULL, 0);
+    *image = NULL;
+    if (size <= 0)
+        return brc_h5_write_failed(f, "all data");
+    *n = (size_t)size;
+    *image = brc_alloc(f->ctx, *n, 1);
+    if (!*image)
+        return BRC_ERR_MEMORY;
+    return H5Fget_file_image(f->id, *image, *n) == size ? 0 : brc_h5_write_failed(f, "all data");
+}
+
+static int write_file(const struct brc_h5_file *f, const char *path, const char *image, size_t n)
+{
+    char seal[BRC_SEAL_SIZE];
+    FILE *file = fopen(path, "wb");
+    bool is_good = file != NULL;
+    if (is_good && f->format != 0) {
+        brc_seal_make(seal, f->format, image, n);
+        is_good = fwrite(seal, sizeof seal, 1, file) == 1;
+    }
+    is_good = is_good && fwrite(image, n, 1, file) == 1 && fflush(file) == 0;
+    int reason = errno;
+    if (file && fclose(file) != 0 && is_good) {
+        is_good = false;
+        reason = errno;
+    }
+    if (!is_good)
+        BRC_FAIL(f->ctx, BRC_ERR_IO,
+                 "cannot write %s: %s; what was saved before stays: make room or choose another "
+                 "folder, then go on with --resume",
+                 path, strerror(reason));
     return 0;
 }
 
@@ -121,26 +167,39 @@ static int publish(struct brc_context *ctx, const char *temporary, const char *p
 
 int brc_h5_finish(struct brc_h5_file *f, int code)
 {
-    char temporary[PATH_SIZE];
-    BRC_TRY(part_path(f->ctx, f->path, temporary));
-    if (code == 0 && H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0)
-        code = brc_h5_write_failed(f, "all data");
-    if (H5Fclose(f->id) < 0 && code == 0)
-        code = brc_h5_write_failed(f, "all data");
+    char temporary[PATH_SIZE], *image = NULL;
+    size_t n = 0;
     if (code == 0)
-        code = publish(f->ctx, temporary, f->path);
-    if (code != 0)
-        unlink(temporary);
+        code = take_image(f, &image, &n);
+    H5Fclose(f->id);
+    if (code == 0)
+        code = part_path(f->ctx, f->path, temporary);
+    if (code == 0) {
+        code = write_file(f, temporary, image, n);
+        if (code == 0)
+            code = publish(f->ctx, temporary, f->path);
+        if (code != 0)
+            unlink(temporary);
+    }
+    free(image);
     return code;
+}
+
+int brc_h5_open_sealed(struct brc_context *ctx, const char *path, int format, struct brc_h5_file *f)
+{
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    *f = (struct brc_h5_file){ctx, path, H5I_INVALID_HID, format};
+    if (format != 0)
+        BRC_TRY(brc_seal_check(ctx, path, format));
+    f->id = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (f->id < 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: it is missing or no HDF5 file", path);
+    return 0;
 }
 
 int brc_h5_open(struct brc_context *ctx, const char *path, struct brc_h5_file *f)
 {
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    *f = (struct brc_h5_file){ctx, path, H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT)};
-    if (f->id < 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: it is missing or no HDF5 file", path);
-    return 0;
+    return brc_h5_open_sealed(ctx, path, 0, f);
 }
 
 void brc_h5_close(struct brc_h5_file *f)

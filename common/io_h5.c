@@ -138,15 +138,22 @@ static int write_texts(const struct brc_h5_file *f, const struct brc_h5_text *te
     return 0;
 }
 
+static void specimen_text(const struct brc_sim *sim, char text[17])
+{
+    snprintf(text, 17, "%016" PRIx64, brc_facets_hash(&sim->specimen->facets));
+}
+
 static int write_provenance(const struct brc_h5_file *f, const struct brc_sim *sim,
                             const struct brc_h5_extra *extra)
 {
-    char hash[17], format[16];
+    char hash[17], format[16], specimen[17];
     hash_text(sim, hash);
+    specimen_text(sim, specimen);
     snprintf(format, sizeof format, "%d", BRC_H5_FORMAT);
     const struct brc_h5_text own[] = {
-        {"program", "breccia"}, {"version", BRC_VERSION},   {"compiler", __VERSION__},
-        {"format", format},     {"model", sim->model.name}, {"state_hash", hash},
+        {"program", "breccia"},      {"version", BRC_VERSION},   {"compiler", __VERSION__},
+        {"format", format},          {"model", sim->model.name}, {"state_hash", hash},
+        {"specimen_hash", specimen},
     };
     BRC_TRY(brc_h5_put_group(f, "provenance"));
     BRC_TRY(write_texts(f, own, sizeof own / sizeof own[0]));
@@ -172,7 +179,7 @@ int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
     struct brc_h5_file f;
     BRC_TRY(brc_contacts_compact(ctx, &sim->pairs));
     BRC_TRY(brc_contacts_compact(ctx, &sim->platens));
-    BRC_TRY(brc_h5_create(ctx, path, &f));
+    BRC_TRY(brc_h5_create_sealed(ctx, path, BRC_H5_FORMAT, &f));
     return brc_h5_finish(&f, write_all(&f, sim, extra));
 }
 
@@ -202,10 +209,12 @@ static int read_all(const struct brc_h5_file *f, struct brc_sim *sim,
                     const struct brc_h5_extra *extra)
 {
     struct brc_state state;
-    char format[16], hash[17];
-    snprintf(format, sizeof format, "%d", BRC_H5_FORMAT);
-    BRC_TRY(expect_text(f, "format", format, "resume with the version that wrote it"));
+    char hash[17], specimen[17];
+    specimen_text(sim, specimen);
     BRC_TRY(expect_text(f, "model", sim->model.name, "choose that model with --model"));
+    BRC_TRY(expect_text(f, "specimen_hash", specimen,
+                        "the case makes another specimen now: resume with the case, and the files "
+                        "that it names, that the run began with"));
     brc_state_list(sim, &state);
     for (int i = 0; i < state.n; i++)
         BRC_TRY(read_part(f, &state.part[i]));
@@ -224,7 +233,7 @@ int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra)
 {
     struct brc_h5_file f;
-    BRC_TRY(brc_h5_open(ctx, path, &f));
+    BRC_TRY(brc_h5_open_sealed(ctx, path, BRC_H5_FORMAT, &f));
     int code = read_all(&f, sim, extra);
     brc_h5_close(&f);
     return code;
@@ -234,7 +243,7 @@ int brc_h5_read_text(struct brc_context *ctx, const char *path, const char *name
 {
     struct brc_h5_file f;
     *text = NULL;
-    BRC_TRY(brc_h5_open(ctx, path, &f));
+    BRC_TRY(brc_h5_open_sealed(ctx, path, BRC_H5_FORMAT, &f));
     int code = read_text(&f, name, text);
     brc_h5_close(&f);
     return code;

@@ -6,7 +6,8 @@
 
 #include "state.h"
 
-enum { BRC_H5_FORMAT = 1 };
+/* 2: sealed, see seal.h; with a hash of the specimen */
+enum { BRC_H5_FORMAT = 2 };
 
 /* A text of the group /provenance. */
 struct brc_h5_text {
@@ -22,12 +23,13 @@ struct brc_h5_extra {
 };
 
 /* Writes the whole state with version, compiler, model and state hash. The file appears at path
- * complete or not at all: it is written beside it, forced to disk and renamed. Point ranges are
- * compacted first. */
+ * complete or not at all: it is written beside it, sealed, forced to disk and renamed. Point ranges
+ * are compacted first. */
 int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra);
-/* Replaces the state of a simulation that was created from the same case. A file of another model,
- * another specimen or other fields, or one whose content does not match its hash, is an error. */
+/* Replaces the state of a simulation that was created from the same case. A file that is not as it
+ * was saved is refused before HDF5 sees it; one of another model, another specimen or other fields
+ * is an error, too. */
 int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra);
 /* A text of /provenance; *text is allocated, to be freed by the caller. */

@@ -198,7 +198,8 @@ void brc_job_locate(struct brc_context *ctx, const struct brc_job *job)
     char key[BRC_CASE_KEY_SIZE], where[BRC_CASE_WHERE_SIZE], message[sizeof ctx->message];
     const char *section;
     struct brc_param_list list;
-    bool is_input = ctx->code == BRC_ERR_INPUT || ctx->code == BRC_ERR_GEOMETRY;
+    bool is_input =
+        ctx->code == BRC_ERR_INPUT || ctx->code == BRC_ERR_GEOMETRY || ctx->code == BRC_ERR_IO;
     if (!is_input || !find_key(ctx->message, &section, &list, key))
         return;
     const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, key, list);

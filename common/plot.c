@@ -529,10 +529,31 @@ static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *scr
     return 0;
 }
 
+/* gnuplot does not tell when the disk is full: a whole picture ends with the mark of PNG. */
+static int check_picture(struct brc_context *ctx, const char *dir, const char *name)
+{
+    static const char mark[8] = {'I', 'E', 'N', 'D', '\xae', 'B', '\x60', '\x82'};
+    char path[PATH_SIZE + 16], end[8] = "";
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *file = fopen(path, "rb");
+    if (file && fseek(file, -(long)sizeof end, SEEK_END) == 0 &&
+        fread(end, sizeof end, 1, file) < 1)
+        end[0] = '\0';
+    if (file)
+        fclose(file);
+    if (memcmp(end, mark, sizeof mark) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "gnuplot left no whole picture %s: is the disk full? All other results are there; "
+                 "make room, then run gnuplot in that folder on its .gp file",
+                 path);
+    return 0;
+}
+
 int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,
                   const struct brc_output_params *output)
 {
     static const char *const script[] = {"curves.gp", "cracks.gp"};
+    static const char *const picture[] = {"curves.png", "cracks.png"};
     BRC_TRY(write_curves(ctx, dir, runs));
     BRC_TRY(write_pictures(ctx, dir, runs, output->picture_height));
     for (int i = 0; i < 2; i++) {
@@ -548,6 +569,8 @@ int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plo
         if (status != 0)
             brc_log(ctx, "gnuplot failed on %s/%s; its messages are in gnuplot.log there", dir,
                     script[i]);
+        else
+            BRC_TRY(check_picture(ctx, dir, picture[i]));
     }
     return 0;
 }

@@ -252,12 +252,28 @@ static int save(struct run *r)
     return 0;
 }
 
+/* Named before parameters are compared: another model has others anyway. */
+static int check_model(struct run *r, const char *path)
+{
+    char *saved;
+    int code = 0;
+    BRC_TRY(brc_h5_read_text(r->ctx, path, "model", &saved));
+    if (strcmp(saved, r->order->model->name) != 0)
+        code = brc_error_set(r->ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                             "%s is a state of the model %s, not %s; choose it with --model, or "
+                             "another folder with -o",
+                             path, saved, r->order->model->name);
+    free(saved);
+    return code;
+}
+
 static int load(struct run *r)
 {
     char path[PATH_SIZE], *saved;
     struct brc_state_part part = counts_part(r);
     const struct brc_h5_extra extra = {NULL, 0, &part, 1};
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(check_model(r, path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
     int code = brc_job_same(r->ctx, saved, r->parameters);
     free(saved);
@@ -437,11 +453,14 @@ static int prepare(struct run *r)
     return 0;
 }
 
-/* After a failure the curves so far are kept for a look; the last saved state stays. */
+/* After a failure the curves so far are kept for a look; the last saved state stays. Where writing
+ * has failed, what is there is left alone. */
 static void keep_traces(struct run *r)
 {
     struct brc_context quiet = BRC_CONTEXT_INIT, *ctx = r->ctx;
     note(r, "failed at step %" PRId64 ": %s", r->sim.step, ctx->message);
+    if (ctx->code == BRC_ERR_IO)
+        return;
     r->ctx = &quiet;
     if (write_tables(r) != 0)
         note(r, "the curves could not be written either: %s", quiet.message);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "seeds.h"
 
+#include "numbers.h"
+#include "vec.h"
+
 #include <gsl/gsl_rng.h>
-#include <math.h>
 #include <stdlib.h>
 
 void brc_seeds_free(struct brc_seeds *s)
@@ -45,4 +47,76 @@ int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
     }
     gsl_rng_free(rng);
     return 0;
+}
+
+/* A row of the file, for sorting by place. */
+struct place {
+    double x[3];
+    int line;
+};
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct place *p = a, *q = b;
+    for (int k = 0; k < 3; k++)
+        if (p->x[k] != q->x[k])
+            return p->x[k] < q->x[k] ? -1 : 1;
+    return p->line < q->line ? -1 : p->line > q->line;
+}
+
+/* No two rows at one place, no negative radius. */
+static int check_points(struct brc_context *ctx, const char *path, const struct brc_numbers *rows)
+{
+    struct place *place = brc_alloc(ctx, rows->n, sizeof *place);
+    int code = place ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < rows->n; i++) {
+        const double *row = rows->value + i * (size_t)rows->width;
+        brc_copy(place[i].x, row);
+        place[i].line = rows->line[i];
+        if (rows->width == 4 && row[3] < 0)
+            code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                                 "specimen.points: %.200s:%d: the radius is %g m; allowed [0, inf)",
+                                 path, rows->line[i], row[3]);
+    }
+    if (code == 0)
+        qsort(place, rows->n, sizeof *place, compare_places);
+    for (size_t i = 1; code == 0 && i < rows->n; i++) {
+        const struct place *p = &place[i - 1], *q = &place[i];
+        if (p->x[0] == q->x[0] && p->x[1] == q->x[1] && p->x[2] == q->x[2])
+            code = brc_error_set(ctx, BRC_ERR_GEOMETRY, __FILE__, __LINE__,
+                                 "specimen.points: %.200s:%d: the seed coincides with that of line "
+                                 "%d at (%g, %g, %g) m; remove or move one of them",
+                                 path, q->line, p->line, q->x[0], q->x[1], q->x[2]);
+    }
+    free(place);
+    return code;
+}
+
+int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *p,
+                     struct brc_seeds *out)
+{
+    struct brc_numbers rows;
+    *out = (struct brc_seeds){0};
+    if (!*p->points)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "specimen.grains: points needs specimen.points, a file of 'x y z' a line");
+    BRC_TRY(brc_numbers_read(ctx, "specimen.points", p->points, "x y z' or 'x y z radius", 3, 4,
+                             &rows));
+    int code = check_points(ctx, p->points, &rows);
+    if (code == 0) {
+        out->n = rows.n;
+        out->x = brc_alloc(ctx, rows.n, sizeof *out->x);
+        out->radius = rows.width == 4 ? brc_alloc(ctx, rows.n, sizeof *out->radius) : NULL;
+        code = ctx->code;
+    }
+    for (size_t i = 0; code == 0 && i < rows.n; i++) {
+        const double *row = rows.value + i * (size_t)rows.width;
+        brc_copy(out->x[i], row);
+        if (out->radius)
+            out->radius[i] = row[3];
+    }
+    brc_numbers_free(&rows);
+    if (code != 0)
+        brc_seeds_free(out);
+    return code;
 }

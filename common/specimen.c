@@ -2,12 +2,12 @@
 #include "specimen.h"
 
 #include "hilbert.h"
+#include "numbers.h"
 #include "packing_cache.h"
 #include "seeds.h"
 #include "tess.h"
 #include "vec.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,64 +50,37 @@ static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_para
     return code;
 }
 
-/* One plane a line: nx ny nz d in metres; '#' begins a comment. */
-static int read_planes(struct brc_context *ctx, const char *path, struct brc_plane *plane,
-                       size_t *n)
-{
-    FILE *file = fopen(path, "r");
-    if (!file)
-        BRC_FAIL(ctx, BRC_ERR_IO, "specimen.planes: cannot read '%s'", path);
-    char line[512];
-    int code = 0, number = 0;
-    *n = 0;
-    while (code == 0 && fgets(line, sizeof line, file)) {
-        struct brc_plane p = {.id = (int32_t)*n};
-        char *at = line;
-        double value[4] = {0};
-        int k = 0;
-        number++;
-        line[strcspn(line, "#\n")] = '\0';
-        if (line[strspn(line, " \t\r")] == '\0')
-            continue;
-        for (; k < 4; k++) {
-            char *end;
-            value[k] = strtod(at, &end);
-            if (end == at || !isfinite(value[k]))
-                break;
-            at = end;
-        }
-        brc_copy(p.n, value);
-        if (k < 4 || *n == MAX_FILE_PLANES || brc_norm(p.n) == 0) {
-            code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                                 "%s:%d: expected 'nx ny nz d' with a normal that is not zero, at "
-                                 "most %d planes",
-                                 path, number, MAX_FILE_PLANES);
-            break;
-        }
-        p.d = value[3] / brc_normalise(p.n, p.n);
-        plane[(*n)++] = p;
-    }
-    fclose(file);
-    return code;
-}
-
+/* One plane a row: nx ny nz d. */
 static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_params *p,
                            struct brc_convex *domain)
 {
-    struct brc_plane *plane = brc_alloc(ctx, MAX_FILE_PLANES, sizeof *plane);
-    if (!plane)
-        return BRC_ERR_MEMORY;
-    size_t n = 0;
+    struct brc_numbers rows;
     double reach = 0;
     const double origin[3] = {0, 0, 0};
-    int code = read_planes(ctx, p->planes, plane, &n);
-    for (size_t i = 0; i < n; i++)
+    BRC_TRY(brc_numbers_read(ctx, "specimen.planes", p->planes, "nx ny nz d", 4, 4, &rows));
+    struct brc_plane *plane = brc_alloc(ctx, rows.n, sizeof *plane);
+    int code = plane ? 0 : BRC_ERR_MEMORY;
+    if (code == 0 && rows.n > MAX_FILE_PLANES)
+        code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                             "specimen.planes: '%s' has %zu planes, at most %d are allowed",
+                             p->planes, rows.n, MAX_FILE_PLANES);
+    for (size_t i = 0; code == 0 && i < rows.n; i++) {
+        const double *row = rows.value + 4 * i;
+        plane[i] = (struct brc_plane){{row[0], row[1], row[2]}, 0, (int32_t)i};
+        plane[i].d = row[3] / brc_normalise(plane[i].n, plane[i].n);
         reach = fmax(reach, fabs(plane[i].d));
+        if (!isfinite(plane[i].d))
+            code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                                 "specimen.planes: %s:%d: the normal nx ny nz must not be zero",
+                                 p->planes, rows.line[i]);
+    }
     if (code == 0)
-        code = brc_convex_from_planes(ctx, domain, plane, n, origin, 1e3 * reach);
+        code = brc_convex_from_planes(ctx, domain, plane, rows.n, origin, 1e3 * reach);
     free(plane);
+    brc_numbers_free(&rows);
     if (code == 0 && domain->n_faces == 0)
-        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "the planes of '%s' enclose nothing", p->planes);
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "specimen.planes: the planes of '%s' enclose nothing",
+                 p->planes);
     return code;
 }
 
@@ -153,6 +126,10 @@ static int make_seeds(struct brc_context *ctx, struct brc_specimen *s, struct br
         if (p->shape != BRC_SHAPE_BOX)
             BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.grains: grid needs specimen.shape: box");
         BRC_TRY(brc_seeds_grid(ctx, p, seeds));
+        return brc_seeds_sort(ctx, seeds);
+    }
+    if (p->grains == BRC_GRAINS_POINTS) {
+        BRC_TRY(brc_seeds_points(ctx, p, seeds));
         return brc_seeds_sort(ctx, seeds);
     }
     if (brc_packing_cache_load(ctx, p, &s->domain, seeds))

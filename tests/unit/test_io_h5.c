@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/h5.h"
 #include "common/io_h5.h"
+#include "common/seal.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>
@@ -117,7 +118,7 @@ static void test_fields_describe_themselves(void **state)
     make_path(path);
     make_sim(f);
     save(f, path);
-    CHECK_OK(&f->ctx, brc_h5_open(&f->ctx, path, &file));
+    CHECK_OK(&f->ctx, brc_h5_open_sealed(&f->ctx, path, BRC_H5_FORMAT, &file));
     static const struct {
         const char *field, *label, *text;
     } expected[] = {
@@ -145,6 +146,24 @@ static void fails_to_load(struct fixture *f, const char *path, int code, const c
     start_sim(f);
 }
 
+/* Seals what stands behind the first skip bytes of a file. */
+static void seal(const char *path, int format, size_t skip)
+{
+    char seal[BRC_SEAL_SIZE], *bytes = malloc(1 << 20);
+    FILE *file = fopen(path, "rb");
+    assert_true(bytes && file);
+    size_t n = fread(bytes, 1, 1 << 20, file);
+    fclose(file);
+    assert_in_range(n, skip + 1, (1 << 20) - 1);
+    brc_seal_make(seal, format, bytes + skip, n - skip);
+    file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(seal, sizeof seal, 1, file), 1);
+    assert_int_equal(fwrite(bytes + skip, n - skip, 1, file), 1);
+    fclose(file);
+    free(bytes);
+}
+
 static void test_foreign_files(void **state)
 {
     struct fixture *f = *state;
@@ -158,49 +177,76 @@ static void test_foreign_files(void **state)
     fails_to_load(f, path, BRC_ERR_INPUT, "model null, expected other");
     fixture_grid(f, 2, 2, 2, 0.01, 0.5);
     start_sim(f);
-    fails_to_load(f, path, BRC_ERR_INPUT, "rows of bodies");
+    fails_to_load(f, path, BRC_ERR_INPUT, "the case makes another specimen now");
+    fixture_grid(f, 3, 2, 2, 0.01, 0.500001); /* as many bodies, elsewhere */
+    start_sim(f);
+    fails_to_load(f, path, BRC_ERR_INPUT, "the case makes another specimen now");
     unlink(path);
-    fails_to_load(f, path, BRC_ERR_IO, "missing");
+    fails_to_load(f, path, BRC_ERR_IO, "No such file");
     FILE *out = fopen(path, "w");
     assert_non_null(out);
     fputs("this is no HDF5 file", out);
     fclose(out);
+    fails_to_load(f, path, BRC_ERR_IO, "no state file of breccia");
+    seal(path, BRC_H5_FORMAT, 0);
     fails_to_load(f, path, BRC_ERR_IO, "no HDF5 file");
     unlink(path);
 }
 
-/* Any flipped byte of the file is noticed, or does not matter to the state. */
+static void flip(const char *path, long at)
+{
+    FILE *file = fopen(path, "r+");
+    assert_non_null(file);
+    fseek(file, at, SEEK_SET);
+    int byte = fgetc(file);
+    fseek(file, at, SEEK_SET);
+    fputc(byte ^ 0x5a, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Any byte that has changed, the seal's included, ends the load with one message; so does any byte
+ * that is missing or too much. */
 static void test_damage(void **state)
 {
     struct fixture *f = *state;
     char path[64];
-    long size, noticed = 0, tried = 0;
     make_path(path);
     make_sim(f);
-    uint64_t hash = brc_sim_hash(&f->sim);
     save(f, path);
-    FILE *file = fopen(path, "r+");
+    FILE *file = fopen(path, "r");
     assert_non_null(file);
     fseek(file, 0, SEEK_END);
-    size = ftell(file);
-    for (long at = 4096; at < size; at += 997, tried++) {
-        fseek(file, at, SEEK_SET);
-        int byte = fgetc(file);
-        fseek(file, at, SEEK_SET);
-        fputc(byte ^ 0x5a, file);
-        fflush(file);
-        start_sim(f);
-        if (brc_h5_load(&f->ctx, path, &f->sim, &extra) != 0)
-            noticed++;
-        else
-            assert_true(brc_sim_hash(&f->sim) == hash);
-        brc_error_clear(&f->ctx);
-        fseek(file, at, SEEK_SET);
-        fputc(byte, file);
-        fflush(file);
-    }
+    long size = ftell(file);
     fclose(file);
-    assert_true(tried > 20 && noticed > 0);
+    for (long at = 0; at < size; at += at < BRC_SEAL_SIZE ? 1 : 97) {
+        flip(path, at);
+        CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra),
+                    at == 22 ? BRC_ERR_INPUT : BRC_ERR_IO, path);
+        flip(path, at);
+    }
+    CHECK_OK(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra));
+    file = fopen(path, "a");
+    assert_non_null(file);
+    fputc(0, file);
+    fclose(file);
+    CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "overwritten");
+    for (long at = size - 1; at > 0; at /= 2) {
+        assert_int_equal(truncate(path, at), 0);
+        CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cut short");
+    }
+    unlink(path);
+}
+
+static void test_other_format(void **state)
+{
+    struct fixture *f = *state;
+    char path[64];
+    make_path(path);
+    make_sim(f);
+    save(f, path);
+    seal(path, BRC_H5_FORMAT + 1, BRC_SEAL_SIZE);
+    CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_INPUT,
+                "has the state format 3, breccia " BRC_VERSION " reads 2");
     unlink(path);
 }
 
@@ -211,13 +257,13 @@ static void test_failed_save_keeps_the_old_file(void **state)
     snprintf(folder, sizeof folder, "/tmp/breccia-test-%ld", (long)getpid());
     snprintf(path, sizeof path, "%s/none/state.h5", folder);
     make_sim(f);
-    CHECK_FAILS(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cannot create");
+    CHECK_FAILS(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cannot write");
     /* the temporary's name is taken by a folder */
     snprintf(command, sizeof command, "mkdir -p %s/state.h5.part && echo old >%s/state.h5", folder,
              folder);
     assert_int_equal(system(command), 0);
     snprintf(path, sizeof path, "%s/state.h5", folder);
-    CHECK_FAILS(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cannot create");
+    CHECK_FAILS(&f->ctx, brc_h5_save(&f->ctx, path, &f->sim, &extra), BRC_ERR_IO, "cannot write");
     snprintf(command, sizeof command, "grep -qx old %s && rm -r %s", path, folder);
     assert_int_equal(system(command), 0);
 }
@@ -230,6 +276,7 @@ int main(void)
         FIXTURE_TEST(test_equal_states_give_equal_files),
         FIXTURE_TEST(test_foreign_files),
         FIXTURE_TEST(test_damage),
+        FIXTURE_TEST(test_other_format),
         FIXTURE_TEST(test_failed_save_keeps_the_old_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "seal.h"
+
+#include "fields.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK_SIZE = 1 << 16 }; /* a multiple of 8: the hash goes on between blocks */
+static const char MARK[] = "breccia state, format ";
+static const char ADVICE[] = "use an undamaged copy, or start the run anew with --force";
+
+/* What a seal says. */
+struct seal {
+    int format;
+    uint64_t size, hash;
+};
+
+static void print_seal(const struct seal *s, char text[BRC_SEAL_SIZE])
+{
+    memset(text, '\n', BRC_SEAL_SIZE);
+    int n = snprintf(text, BRC_SEAL_SIZE,
+                     "%s%d\nbytes %" PRIu64 "\nhash %016" PRIx64 "\n"
+                     "From byte %d on this is an HDF5 file, which any HDF5 reader opens as it is;\n"
+                     "bytes is the size of the whole, hash is that of what follows this block.\n",
+                     MARK, s->format, s->size, s->hash, BRC_SEAL_SIZE);
+    text[n] = '\n';
+}
+
+/* Size of a file and hash of all behind the seal. */
+static int measure(struct brc_context *ctx, const char *path, FILE *file, struct seal *s)
+{
+    static const size_t block_size = BLOCK_SIZE;
+    char *block = brc_alloc(ctx, block_size, 1);
+    if (!block)
+        return BRC_ERR_MEMORY;
+    size_t n;
+    s->size = BRC_SEAL_SIZE;
+    s->hash = BRC_HASH_SEED;
+    errno = 0;
+    bool is_good = fseek(file, BRC_SEAL_SIZE, SEEK_SET) == 0;
+    while (is_good && (n = fread(block, 1, block_size, file)) > 0) {
+        s->hash = brc_hash_bytes(block, n, s->hash);
+        s->size += n;
+    }
+    is_good = is_good && !ferror(file);
+    free(block);
+    if (!is_good)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", path, strerror(errno));
+    return 0;
+}
+
+void brc_seal_make(char seal[BRC_SEAL_SIZE], int format, const void *bytes, size_t n)
+{
+    const struct seal s = {format, BRC_SEAL_SIZE + n, brc_hash_bytes(bytes, n, BRC_HASH_SEED)};
+    print_seal(&s, seal);
+}
+
+/* Takes the numbers out of a seal, as far as they are there: it is compared as a whole later. */
+static bool read_seal(const char text[BRC_SEAL_SIZE], struct seal *s)
+{
+    char line[BRC_SEAL_SIZE + 1];
+    memcpy(line, text, BRC_SEAL_SIZE);
+    line[BRC_SEAL_SIZE] = '\0';
+    if (strncmp(line, MARK, sizeof MARK - 1) != 0)
+        return false;
+    const char *size = strstr(line, "\nbytes "), *hash = strstr(line, "\nhash ");
+    s->format = (int)strtol(line + sizeof MARK - 1, NULL, 10);
+    s->size = size ? strtoull(size + 7, NULL, 10) : 0;
+    s->hash = hash ? strtoull(hash + 6, NULL, 16) : 0;
+    return true;
+}
+
+static int check_file(struct brc_context *ctx, const char *path, FILE *file, int format)
+{
+    char text[BRC_SEAL_SIZE], expected[BRC_SEAL_SIZE];
+    struct seal said, found = {.format = format};
+    if (fread(text, 1, BRC_SEAL_SIZE, file) != BRC_SEAL_SIZE || !read_seal(text, &said))
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "cannot read %s: it is no state file of breccia, cut short, or of a version "
+                 "before %s; %s",
+                 path, BRC_VERSION, ADVICE);
+    if (said.format != format)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s has the state format %d, breccia %s reads %d; resume with the version that "
+                 "wrote it, or start the run anew with --force",
+                 path, said.format, BRC_VERSION, format);
+    BRC_TRY(measure(ctx, path, file, &found));
+    if (found.size != said.size)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "%s has %" PRIu64 " bytes, it was saved with %" PRIu64 ": it is cut short or "
+                 "overwritten; %s",
+                 path, found.size, said.size, ADVICE);
+    print_seal(&found, expected);
+    if (memcmp(text, expected, BRC_SEAL_SIZE) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "%s is damaged: its content does not match its hash; %s", path,
+                 ADVICE);
+    return 0;
+}
+
+int brc_seal_check(struct brc_context *ctx, const char *path, int format)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", path, strerror(errno));
+    int code = check_file(ctx, path, file, format);
+    fclose(file);
+    return code;
+}

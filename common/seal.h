@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A seal at the start of a binary file tells whether the file is whole before any library parses
+ * it: text lines with the format's number, the size of the file and a hash of all that follows. A
+ * change of any one byte is noticed always, more with all but certainty; it is no protection
+ * against forgery. In HDF5 files the seal is the user block, so every HDF5 reader opens them. */
+#ifndef BRC_SEAL_H
+#define BRC_SEAL_H
+
+#include "error.h"
+
+enum { BRC_SEAL_SIZE = 512 };
+
+/* The seal to stand before n bytes. */
+void brc_seal_make(char seal[BRC_SEAL_SIZE], int format, const void *bytes, size_t n);
+/* Fails unless the file is there, sealed, of this format, and as it was when it was sealed. */
+int brc_seal_check(struct brc_context *ctx, const char *path, int format);
+
+#endif
