@@ -39,7 +39,7 @@ PROGRAM       := $(if $(MAIN_SOURCES),$(BUILD)/breccia)
 
 # --- flags -----------------------------------------------------------------------------------------
 # build/deps.mk is made by .ci/deps, which first installs what is missing; make reads it again then.
-ifneq ($(filter-out clean help deps,$(or $(MAKECMDGOALS),all)),)
+ifneq ($(filter-out clean help deps uninstall,$(or $(MAKECMDGOALS),all)),)
 include build/deps.mk
 endif
 build/deps.mk: .ci/deps
@@ -88,7 +88,7 @@ $(BUILD)/registry_list.h: FORCE
 $(BUILD)/flags: FORCE
 	$(call write_fact,'$(CC) $(CXX) $(CFLAGS_ALL) $(CXXFLAGS_ALL) $(LINK_FLAGS)')
 $(BUILD)/sources: FORCE
-	$(call write_fact,$(LIB_SOURCES) $(AID_SOURCES))
+	$(call write_fact,$(SONAME) $(LIB_SOURCES) $(AID_SOURCES))
 
 $(BUILD)/obj/%.c.o: %.c $(BUILD)/flags | $(BUILD)/registry_list.h
 	@mkdir -p $(@D)
@@ -105,7 +105,7 @@ $(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
 	@rm -f $@; ar rcs $@ $(LIB_OBJECTS)
 $(BUILD)/libbreccia.so: $(LIB_OBJECTS) $(BUILD)/sources
 	@echo "link $@"
-	@$(CXX) $(LINK_FLAGS) -shared $(LIB_OBJECTS) $(DEPS_LIBS) -o $@
+	@$(CXX) $(LINK_FLAGS) -shared -Wl,-soname,$(SONAME) $(LIB_OBJECTS) $(DEPS_LIBS) -o $@
 $(BUILD)/libaid.a: $(AID_OBJECTS) $(BUILD)/sources
 	@rm -f $@; ar rcs $@ $(AID_OBJECTS)
 $(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(SAN_OBJECTS) $(BUILD)/libbreccia.a
@@ -118,6 +118,53 @@ $(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS
 
 ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES)
 -include $(patsubst %.o,%.d,$(call objects,$(ALL_SOURCES)))
+
+# --- installing ------------------------------------------------------------------------------------
+.PHONY: install uninstall
+VERSION := $(shell sed -n 's/^.define BRC_VERSION "\(.*\)"/\1/p' common/brc.h)
+# before 1.0 each minor version may change the interface
+SONAME  := libbreccia.so.$(word 1,$(subst ., ,$(VERSION))).$(word 2,$(subst ., ,$(VERSION)))
+PREFIX  ?= /usr/local
+BINDIR  ?= $(PREFIX)/bin
+LIBDIR  ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DATADIR ?= $(PREFIX)/share
+DOCDIR  ?= $(DATADIR)/doc/breccia
+# of the tessellation and the packing alone
+PUBLIC_HEADERS := $(filter-out common/tess_cgal.h common/packing_cache.h,$(wildcard common/*.h calib/*.h))
+DOCUMENTS := README.md LICENSE $(wildcard docs/*.md) docs/example_library.c
+COMPLETION := $(DATADIR)/bash-completion/completions/breccia
+$(BUILD)/breccia.1: docs/make-man $(BUILD)/breccia
+	@$^ >$@
+$(BUILD)/completion: docs/make-completion $(BUILD)/breccia
+	@$^ >$@
+$(BUILD)/breccia.pc: $(BUILD)/flags common/brc.h Makefile FORCE
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' 'Name: breccia' \
+		'Description: fracture of bonded-grain rock, contact models side by side' 'Version: $(VERSION)' \
+		'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lbreccia' \
+		'Libs.private: $(DEPS_LIBS) -lstdc++' >$@
+install: all $(BUILD)/breccia.1 $(BUILD)/completion $(BUILD)/breccia.pc ## into PREFIX (/usr/local), below DESTDIR
+	@install -d $(addprefix $(DESTDIR),$(BINDIR) $(LIBDIR)/pkgconfig $(INCLUDEDIR)/breccia $(DATADIR)/man/man1 \
+		$(dir $(COMPLETION)) $(DOCDIR) $(DOCDIR)/cases)
+	@install $(BUILD)/breccia $(DESTDIR)$(BINDIR)/breccia
+	@install -m 644 $(BUILD)/libbreccia.a $(DESTDIR)$(LIBDIR)/libbreccia.a
+	@install $(BUILD)/libbreccia.so $(DESTDIR)$(LIBDIR)/libbreccia.so.$(VERSION)
+	@ln -sf libbreccia.so.$(VERSION) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	@ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbreccia.so
+	@install -m 644 $(BUILD)/breccia.pc $(DESTDIR)$(LIBDIR)/pkgconfig/breccia.pc
+	@for header in $(PUBLIC_HEADERS); do \
+		sed 's,^#include "\(common\|calib\)/,#include ",' $$header >$(DESTDIR)$(INCLUDEDIR)/breccia/$${header##*/}; \
+	done; chmod 644 $(DESTDIR)$(INCLUDEDIR)/breccia/*.h
+	@install -m 644 $(BUILD)/breccia.1 $(DESTDIR)$(DATADIR)/man/man1/breccia.1
+	@install -m 644 $(BUILD)/completion $(DESTDIR)$(COMPLETION)
+	@install -m 644 $(DOCUMENTS) $(DESTDIR)$(DOCDIR)
+	@install -m 644 $(wildcard cases/*.yaml) $(DESTDIR)$(DOCDIR)/cases
+	@echo "installed breccia $(VERSION) in $(DESTDIR)$(PREFIX)$(if $(DESTDIR),,; run ldconfig if the linker does not find libbreccia)"
+uninstall: ## removes what install has put there
+	@rm -f $(DESTDIR)$(BINDIR)/breccia $(DESTDIR)$(LIBDIR)/libbreccia.a $(DESTDIR)$(LIBDIR)/libbreccia.so* \
+		$(DESTDIR)$(LIBDIR)/pkgconfig/breccia.pc $(DESTDIR)$(DATADIR)/man/man1/breccia.1 $(DESTDIR)$(COMPLETION)
+	@rm -rf $(DESTDIR)$(INCLUDEDIR)/breccia $(DESTDIR)$(DOCDIR)
+	@echo "removed breccia from $(DESTDIR)$(PREFIX)"
 
 # --- checking --------------------------------------------------------------------------------------
 .PHONY: check check-san check-mutants lint demo bench deps clean help

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A program of one's own on the installed library: runs a model through the test of a case and
+ * prints what was measured.
+ *     cc example_library.c $(pkg-config --cflags --libs breccia) -o example
+ *     ./example case.yaml vgcm */
+#include <breccia/job.h>
+
+#include <stdio.h>
+
+static int run(struct brc_context *ctx, struct brc_job *job, const struct brc_model *model,
+               struct brc_specimen *specimen, struct brc_sim *sim)
+{
+    struct brc_result result[BRC_MAX_RESULTS];
+    BRC_TRY(brc_specimen_create(ctx, &job->specimen, specimen));
+    BRC_TRY(brc_sim_create(ctx, sim, model, brc_job_params(job, model), specimen, &job->test,
+                           &job->run));
+    while (!brc_rig_done(sim))
+        BRC_TRY(brc_sim_step(sim));
+    int n = brc_rig_results(sim, result);
+    for (int i = 0; i < n; i++)
+        printf("%s = %.17g %s\n", result[i].name, result[i].value, result[i].unit);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct brc_context ctx = BRC_CONTEXT_INIT;
+    struct brc_job job = {0};
+    struct brc_specimen specimen = {0};
+    struct brc_sim sim = {0};
+    const struct brc_model *model = argc == 3 ? brc_registry_find(argv[2]) : NULL;
+    if (!model)
+        return 2;
+    int code = brc_job_read(&ctx, &job, argv[1], NULL, 0);
+    if (code == 0)
+        code = run(&ctx, &job, model, &specimen, &sim);
+    if (code != 0)
+        fprintf(stderr, "%s\n", ctx.message);
+    brc_sim_free(&sim);
+    brc_specimen_free(&specimen);
+    brc_job_free(&job);
+    return brc_error_exit_status(code);
+}
