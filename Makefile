@@ -50,7 +50,8 @@ CXX      := g++
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wpointer-arith -Wcast-qual -Wundef -Wformat=2 \
             -Wwrite-strings -Wduplicated-cond -Wlogical-op -Wnull-dereference -Werror
 # before C23, pedantry forbids passing double (*)[3] as const double (*)[3]; C23 allows it
-WARNINGS_C := -Wno-c11-c2x-compat -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+# functions that take vectors are all inlined: the convention for passing them does not matter
+WARNINGS_C := -Wno-psabi -Wno-c11-c2x-compat -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 WARNINGS_CXX := -Wmissing-declarations
 FLAGS_release := -O2 -g
 FLAGS_debug   := -O0 -g -DBRC_DEBUG
@@ -99,6 +100,8 @@ $(BUILD)/obj/%.cpp.o: %.cpp $(BUILD)/flags
 	@echo "c++  $<"
 	@$(CXX) $(CXXFLAGS_ALL) -MMD -MP -c $< -o $@
 $(BUILD)/obj/common/registry.c.o: $(BUILD)/registry_list.h
+# loops that are compiled for each instruction set
+%_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_release := -O3 -g
 
 $(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
 	@echo "ar   $@"

@@ -12,6 +12,7 @@ int brc_contacts_create(struct brc_context *ctx, struct brc_contacts *c, const c
                         size_t n_bodies, struct brc_fieldset model, struct brc_fieldset points)
 {
     memset(c, 0, sizeof *c);
+    c->lanes = 1;
     struct brc_fieldset common = BRC_FIELDSET(contact_fields, struct brc_contacts);
     brc_table_init(&c->table, name, common, c);
     c->n_bodies = n_bodies;
@@ -73,6 +74,12 @@ static int build_adjacency(struct brc_context *ctx, struct brc_contacts *c)
     return 0;
 }
 
+/* Points that a range of np takes up. */
+static int32_t padded(int32_t np, int32_t lanes)
+{
+    return (np + lanes - 1) / lanes * lanes;
+}
+
 int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int32_t (*pair)[2],
                      size_t n)
 {
@@ -108,7 +115,8 @@ int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t 
 {
     if (np > c->pcap[i]) {
         size_t start = c->points.n;
-        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)np));
+        int32_t reserved = padded(np, c->lanes);
+        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)reserved));
         for (int f = 0; f < c->points.set.n; f++) {
             size_t size = brc_field_size(&c->points.set.fields[f]);
             char *column = brc_table_column(&c->points, f);
@@ -116,7 +124,7 @@ int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t 
                    (size_t)c->np[i] * size);
         }
         c->p0[i] = (int32_t)start;
-        c->pcap[i] = np;
+        c->pcap[i] = reserved;
     } else if (np > c->np[i]) {
         for (int f = 0; f < c->points.set.n; f++) {
             size_t size = brc_field_size(&c->points.set.fields[f]);
@@ -146,25 +154,37 @@ int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b)
     return -1;
 }
 
-int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
+/* Moves the ranges of points to follow each other, each padded to a multiple of lanes. */
+static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lanes)
 {
     size_t total = 0;
     for (size_t i = 0; i < c->n; i++)
-        total += (size_t)c->np[i];
+        total += (size_t)padded(c->np[i], lanes);
     size_t *from = brc_alloc(ctx, total, sizeof *from);
     if (!from)
         return BRC_ERR_MEMORY;
     size_t k = 0;
     for (size_t i = 0; i < c->n; i++) {
         size_t start = k;
-        for (int32_t j = 0; j < c->np[i]; j++)
-            from[k++] = (size_t)c->p0[i] + (size_t)j;
+        int32_t reserved = padded(c->np[i], lanes);
+        for (int32_t j = 0; j < reserved; j++)
+            from[k++] = j < c->np[i] ? (size_t)c->p0[i] + (size_t)j : BRC_NEW_ROW;
         c->p0[i] = (int32_t)start;
-        c->pcap[i] = c->np[i];
+        c->pcap[i] = reserved;
     }
     int code = brc_table_gather(ctx, &c->points, from, total);
     free(from);
     return code;
+}
+
+int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
+{
+    return arrange(ctx, c, c->lanes);
+}
+
+int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c)
+{
+    return arrange(ctx, c, 1);
 }
 
 int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
@@ -187,7 +207,7 @@ int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c)
 {
     size_t used = 0;
     for (size_t i = 0; i < c->n; i++)
-        used += (size_t)c->np[i];
+        used += (size_t)padded(c->np[i], c->lanes);
     return 4 * c->points.n > 5 * used + 64 ? brc_contacts_compact(ctx, c) : 0;
 }
 

@@ -33,6 +33,7 @@ enum brc_status {
 struct brc_contacts {
     BRC_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
     size_t n;
+    int32_t lanes; /* ranges of points begin at multiples of it, and are padded to one */
     struct brc_table table;
     struct brc_table model; /* the model's contact fields, same rows */
     void *model_columns;
@@ -60,11 +61,14 @@ int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int3
 int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t i, int32_t np);
 /* Row of the pair, or -1. */
 int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b);
-/* Closes gaps between the point ranges, so that p0 is the running sum of np. */
+/* Closes gaps between the point ranges: what lies between them are zeros up to the next multiple of
+ * `lanes`. */
 int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c);
+/* The same without padding: p0 is the running sum of np, as files have it. */
+int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c);
 /* Compacts when a fifth of the points' memory has been left behind by ranges that moved. */
 int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c);
-/* After the tables have been replaced by saved, compact ones: n, p0 and the rows of each body. */
+/* After the tables have been replaced by saved, packed ones: n, p0 and the rows of each body. */
 int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c);
 /* Hash of rows and points, independent of how the ranges lie in memory. */
 uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed);

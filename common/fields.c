@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALIGNMENT = 64 };
+enum { ALIGNMENT = 64, ROWS = 4 /* capacity is a multiple of it */ };
 
 size_t brc_type_size(enum brc_type type)
 {
@@ -59,6 +59,8 @@ static void *aligned_block(struct brc_context *ctx, size_t rows, size_t row_size
 static int replace_columns(struct brc_context *ctx, struct brc_table *t, const size_t *from,
                            size_t n, size_t cap)
 {
+    size_t filled = (n + ROWS - 1) / ROWS * ROWS;
+    cap = (cap + ROWS - 1) / ROWS * ROWS;
     void **fresh = brc_alloc(ctx, (size_t)t->set.n, sizeof *fresh);
     if (!fresh)
         return BRC_ERR_MEMORY;
@@ -84,6 +86,8 @@ static int replace_columns(struct brc_context *ctx, struct brc_table *t, const s
             else
                 memcpy(to + row * size, old + from[row] * size, size);
         }
+        if (from)
+            memset(to + n * size, 0, (filled - n) * size);
     }
     for (int i = 0; i < t->set.n; i++) {
         free(brc_table_column(t, i));

@@ -67,8 +67,8 @@ struct brc_table {
 
 /* Binds a table to a caller-owned struct of column pointers (all NULL). */
 void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset set, void *columns);
-/* Sets the row count; new rows are zero; capacity grows by doubling. Columns are 64-byte aligned
- * and may move. */
+/* Sets the row count; new rows are zero; capacity grows by doubling. Columns are 64-byte aligned,
+ * hold a multiple of 4 rows (what is past the last row may be read and written), and may move. */
 int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n);
 #define BRC_NEW_ROW ((size_t)-1)
 /* Row i becomes the old row from[i]; BRC_NEW_ROW gives a zero row. */

@@ -177,10 +177,17 @@ int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra)
 {
     struct brc_h5_file f;
-    BRC_TRY(brc_contacts_compact(ctx, &sim->pairs));
-    BRC_TRY(brc_contacts_compact(ctx, &sim->platens));
-    BRC_TRY(brc_h5_create_sealed(ctx, path, BRC_H5_FORMAT, &f));
-    return brc_h5_finish(&f, write_all(&f, sim, extra));
+    struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens};
+    for (int i = 0; i < 2; i++)
+        BRC_TRY(brc_contacts_pack(ctx, sets[i]));
+    int code = brc_h5_create_sealed(ctx, path, BRC_H5_FORMAT, &f);
+    if (code == 0)
+        code = brc_h5_finish(&f, write_all(&f, sim, extra));
+    for (int i = 0; i < 2; i++) {
+        int compacted = brc_contacts_compact(ctx, sets[i]);
+        code = code != 0 ? code : compacted;
+    }
+    return code;
 }
 
 static int read_text(const struct brc_h5_file *f, const char *name, char **text)

@@ -24,7 +24,7 @@ struct brc_h5_extra {
 
 /* Writes the whole state with version, compiler, model and state hash. The file appears at path
  * complete or not at all: it is written beside it, sealed, forced to disk and renamed. Point ranges
- * are compacted first. */
+ * are packed for it. */
 int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra);
 /* Replaces the state of a simulation that was created from the same case. A file that is not as it

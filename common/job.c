@@ -139,7 +139,8 @@ char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
 static bool may_change(const char *line, size_t key_length)
 {
     static const char *const keys[] = {"test.strain_max", "test.stop_drop",       "run.max_steps",
-                                       "run.checkpoint",  "run.checkpoint_steps", "specimen.cache"};
+                                       "run.checkpoint",  "run.checkpoint_steps", "run.simd",
+                                       "specimen.cache"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
         if (strlen(keys[i]) == key_length && strncmp(line, keys[i], key_length) == 0)
             return true;

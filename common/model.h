@@ -26,6 +26,7 @@ struct brc_model {
     struct brc_param_list params;
     struct brc_fieldset body_fields, contact_fields, point_fields;
     unsigned flags;
+    int point_lanes; /* ranges of points begin at its multiples, padded with zeros; 0 counts as 1 */
 
     /* --- required ------------------------------------------------------------------------------
      */

@@ -224,6 +224,7 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     sim->run = *run;
     sim->damping_alpha = run->regime == BRC_QUASI_STATIC ? run->local_damping : 0;
     brc_events_init(&sim->events);
+    BRC_TRY(brc_simd_check(ctx, run->simd));
     BRC_TRY(brc_model_complete(ctx, model, &sim->model));
     BRC_TRY(sim->model.check(ctx, params, specimen));
     const struct brc_model *m = &sim->model;
@@ -242,6 +243,8 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     if (code == 0)
         code = brc_contacts_create(ctx, &sim->platens, "platens", n, m->contact_fields,
                                    m->point_fields);
+    if (code == 0 && m->point_lanes > 0)
+        sim->pairs.lanes = sim->platens.lanes = m->point_lanes;
     if (code == 0)
         code = build(sim, test);
     if (code == 0)
@@ -307,6 +310,8 @@ int brc_sim_restore(struct brc_sim *sim)
 {
     BRC_TRY(brc_contacts_restore(sim->ctx, &sim->pairs));
     BRC_TRY(brc_contacts_restore(sim->ctx, &sim->platens));
+    BRC_TRY(brc_contacts_compact(sim->ctx, &sim->pairs));
+    BRC_TRY(brc_contacts_compact(sim->ctx, &sim->platens));
     memset(sim->events.count, 0, sizeof sim->events.count);
     for (size_t i = 0; i < sim->events.table.n; i++)
         sim->events.count[sim->events.mode[i]]++;

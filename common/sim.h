@@ -6,6 +6,7 @@
 #include "bodies.h"
 #include "contacts.h"
 #include "events.h"
+#include "lanes.h"
 #include "ledger.h"
 #include "model.h"
 #include "rig.h"
@@ -28,6 +29,8 @@ enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
     REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")            \
     FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")               \
     REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                   \
+    CHOICE(simd, "auto|base|avx2|avx512", "auto",                                                \
+           "instructions that hot loops use; the same bits with each of them")                   \
     INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")          \
     REAL(checkpoint, "s", "5 min", "[0, inf)",                                                   \
          "elapsed time between saved states; 0: none by time")                                   \

@@ -7,7 +7,7 @@ static struct vgcm_point point_of(const struct vgcm_points *p, const struct vgcm
                                   size_t j, int flags)
 {
     struct vgcm_point q = {p->un[j], 0, p->fs[j], p->ft[j], p->dn[j], p->ds[j], p->lost[j]};
-    q.fn = p->area[j] * vgcm_law_normal(bond, flags, &q, vgcm_law_damage(&q));
+    q.fn = vgcm_law_normal(bond, flags, p->area[j], &q);
     return q;
 }
 
@@ -26,12 +26,13 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
     int flags = law->is_brittle ? VGCM_BRITTLE : 0;
     if (f->phase[i] == VGCM_AFFINE) {
-        vgcm_two sum[VGCM_N_MOTION], u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
-        vgcm_two_load6(u, f->u, i, i);
-        vgcm_two_load6(moment, f->moment, i, i);
-        vgcm_force_affine(sum, vgcm_two_of(bond.kn, bond.kn), vgcm_two_of(bond.ks, bond.ks), moment,
-                          u);
-        stored[0] += 0.5 * vgcm_two_work(sum, u)[0];
+        brc_lanes sum[VGCM_N_MOTION], u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
+        for (int k = 0; k < VGCM_N_MOTION; k++) {
+            u[k] = brc_lanes_all(f->u[i][k]);
+            moment[k] = brc_lanes_all(f->moment[i][k]);
+        }
+        vgcm_force_affine(sum, brc_lanes_all(bond.kn), brc_lanes_all(bond.ks), moment, u);
+        stored[0] += 0.5 * vgcm_force_work(sum, u)[0];
         return;
     }
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
@@ -81,15 +82,19 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     struct vgcm_motion m;
     if (c->k[i][0] == 0)
         return 0;
-    vgcm_motion_of(&sim->bodies, c, i, 0, &m);
+    size_t first = vgcm_block(i), lane = i - first;
+    vgcm_motion_of(&sim->bodies, c, first, 0, &m);
     struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
-    brc_copy(spring.n, m.n);
+    double s[3], t[3];
+    brc_set(spring.n, m.n[0][lane], m.n[1][lane], m.n[2][lane]);
+    brc_set(s, m.s[0][lane], m.s[1][lane], m.s[2][lane]);
+    brc_set(t, m.t[0][lane], m.t[1][lane], m.t[2][lane]);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        brc_scale(spring.ra, m.n, m.h);
-        brc_axpy(spring.ra, p->s[j], m.s);
-        brc_axpy(spring.ra, p->t[j], m.t);
+        brc_scale(spring.ra, spring.n, m.h[lane]);
+        brc_axpy(spring.ra, p->s[j], s);
+        brc_axpy(spring.ra, p->t[j], t);
         brc_copy(spring.rb, spring.ra);
-        brc_axpy(spring.rb, -m.d, m.n);
+        brc_axpy(spring.rb, -m.d[lane], spring.n);
         spring.kn = f->kn[i] * p->area[j];
         spring.ks = law->eta * spring.kn;
         BRC_TRY(brc_springs_add(sim->ctx, out, &spring));

@@ -146,7 +146,16 @@ static void select_loops(struct brc_sim *sim, void *state)
     vgcm_law_of(&own->law, sim->params);
     own->flags = (own->law.is_brittle ? VGCM_BRITTLE : 0) | (sim->run.ledger ? VGCM_LEDGER : 0) |
                  (own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC ? VGCM_VISCOUS : 0);
-    own->forces = vgcm_forces_loops[own->flags];
+    switch (brc_simd_of(sim->run.simd)) {
+    case BRC_SIMD_AVX512:
+        own->forces = vgcm_forces_avx512[own->flags];
+        break;
+    case BRC_SIMD_AVX2:
+        own->forces = vgcm_forces_avx2[own->flags];
+        break;
+    default:
+        own->forces = vgcm_forces_base[own->flags];
+    }
 }
 
 static void forces(struct brc_sim *sim, void *state)
@@ -205,6 +214,7 @@ const struct brc_model brc_model_vgcm = {
     .contact_fields = BRC_FIELDSET(contact_fields, struct vgcm_contacts),
     .point_fields = BRC_FIELDSET(point_fields, struct vgcm_points),
     .flags = BRC_MODEL_ROTATES,
+    .point_lanes = BRC_LANES,
     .shape = shape,
     .bond = bond,
     .pairs = pairs,

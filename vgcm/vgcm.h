@@ -131,8 +131,10 @@ int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);
 int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
                    const struct brc_candidates *grains, const struct brc_candidates *platens);
 
-/* forces.c: the specialised loops, by the flags of law.h */
-extern void (*const vgcm_forces_loops[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
+/* forces.h: the specialised loops by the flags of law.h, for each instruction set */
+extern void (*const vgcm_forces_base[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
+extern void (*const vgcm_forces_avx2[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
+extern void (*const vgcm_forces_avx512[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
 /* walls.c: few rows, so the flags are looked at as it runs */
 void vgcm_walls(struct brc_sim *sim, const struct vgcm_law *law, int flags);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the benchmarks share. */
+/* What the benchmarks share: specimens and runs, medians over repeats, the machine's own limits,
+ * and results/bench/bench.json. Times are user CPU time of one core. */
 #ifndef BRC_TESTS_BENCH_H
 #define BRC_TESTS_BENCH_H
 
@@ -7,6 +8,8 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 static inline void must(struct brc_context *ctx, int code)
@@ -28,6 +31,147 @@ static inline void set(struct brc_context *ctx, struct brc_param_list list, void
                        const char *key, const char *text)
 {
     must(ctx, brc_params_set(ctx, list, values, "bench", key, text, "bench"));
+}
+
+/* ---- repeats ------------------------------------------------------------------------------- */
+
+enum { BENCH_MAX_TIMES = 4096 };
+
+struct bench_times {
+    double time[BENCH_MAX_TIMES];
+    int n;
+};
+
+static inline void bench_note(struct bench_times *t, double time)
+{
+    if (t->n < BENCH_MAX_TIMES)
+        t->time[t->n++] = time;
+}
+
+static inline int bench_compare(const void *p, const void *q)
+{
+    double a = *(const double *)p, b = *(const double *)q;
+    return (a > b) - (a < b);
+}
+
+/* Value below which the part q of the repeats lie. */
+static inline double bench_quantile(struct bench_times *t, double q)
+{
+    qsort(t->time, (size_t)t->n, sizeof t->time[0], bench_compare);
+    return t->n > 0 ? t->time[(int)(q * (t->n - 1) + 0.5)] : 0;
+}
+
+/* ---- results ------------------------------------------------------------------------------- */
+
+/* bar: largest value that is wanted, 0 for none. limit: what the machine's bandwidth or arithmetic
+ * rate allows, measured in the same run, 0 for none. spread: distance of the quartiles. */
+struct bench_value {
+    const char *name;
+    double value;
+    const char *unit;
+    double bar, limit, spread;
+};
+
+#define BENCH_FILE "results/bench/bench.json"
+
+/* Lines of the file that name other values: one value takes one line. */
+static inline char *bench_others(const char *name)
+{
+    char wanted[128], line[1024], *text = calloc(1, 1);
+    size_t size = 0;
+    snprintf(wanted, sizeof wanted, "\"name\": \"%s\"", name);
+    FILE *file = fopen(BENCH_FILE, "r");
+    while (file && text && fgets(line, sizeof line, file)) {
+        size_t length = strcspn(line, "\n");
+        if (!strstr(line, "\"name\"") || strstr(line, wanted))
+            continue;
+        if (line[length - 1] == ',')
+            length--;
+        text = realloc(text, size + length + 3);
+        if (text)
+            size += (size_t)snprintf(text + size, length + 3, "%.*s,\n", (int)length, line);
+    }
+    if (file)
+        fclose(file);
+    return text;
+}
+
+/* Prints the value, and puts it into the file in place of the one that is there. */
+static inline void bench_report(const struct bench_value *v)
+{
+    const char *state = v->bar == 0 ? "none" : v->value <= v->bar ? "met" : "missed";
+    printf("%s %.4g %s", v->name, v->value, v->unit);
+    if (v->bar > 0)
+        printf("  (bar %g: %s)", v->bar, state);
+    if (v->limit > 0)
+        printf("  (machine's limit %.3g: fraction reached %.2f)", v->limit, v->limit / v->value);
+    printf("\n");
+    fflush(stdout);
+    char *others = bench_others(v->name);
+    mkdir("results", 0777);
+    mkdir("results/bench", 0777);
+    FILE *file = fopen(BENCH_FILE, "w");
+    if (!file || !others) {
+        perror(BENCH_FILE);
+        exit(1);
+    }
+    fprintf(file,
+            "[\n%s  {\"name\": \"%s\", \"value\": %.6g, \"unit\": \"%s\", \"bar\": %g, \"limit\": "
+            "%.6g, \"spread\": %.3g, \"state\": \"%s\"}\n]\n",
+            others, v->name, v->value, v->unit, v->bar, v->limit, v->spread, state);
+    fclose(file);
+    free(others);
+}
+
+/* ---- the machine --------------------------------------------------------------------------- */
+
+typedef double bench_wide __attribute__((vector_size(64), may_alias));
+
+/* a = b + s c over three arrays of n doubles in all, GB/s of the best of a few passes. */
+__attribute__((target_clones("avx512f", "avx2", "default"))) static inline double
+bench_triad(size_t n)
+{
+    double *a = aligned_alloc(64, n / 24 * 24 * sizeof *a), best = 0;
+    if (!a)
+        return 0;
+    size_t third = n / 24;
+    bench_wide *x = (bench_wide *)(void *)a, *y = x + third, *z = y + third;
+    memset(a, 0, n / 24 * 24 * sizeof *a);
+    size_t passes = 1 + ((size_t)1 << 24) / n;
+    for (int repeat = 0; repeat < 8; repeat++) {
+        double begin = cpu_seconds();
+        for (size_t k = 0; k < passes; k++)
+            for (size_t i = 0; i < third; i++)
+                x[i] = y[i] + 3.0 * z[i];
+        double rate = 1e-9 * 192 * (double)(third * passes) / (cpu_seconds() - begin);
+        best = rate > best ? rate : best;
+    }
+    free(a);
+    return best;
+}
+
+/* Multiplications and additions of doubles, independent of each other, Gflop/s at best. */
+__attribute__((target_clones("avx512f", "avx2", "default"))) static inline double
+bench_arithmetic(void)
+{
+    bench_wide x[8];
+    double best = 0;
+    const int n = 1000000;
+    for (int k = 0; k < 8; k++)
+        x[k] = (bench_wide){1, 2, 3, 4, 5, 6, 7, 8};
+    for (int repeat = 0; repeat < 8; repeat++) {
+        double begin = cpu_seconds();
+        for (int i = 0; i < n; i++)
+#pragma GCC unroll 8
+            for (int k = 0; k < 8; k++)
+                x[k] = x[k] * 0.999 + 0.001;
+        double rate = 1e-9 * 8 * 8 * 2 * n / (cpu_seconds() - begin);
+        best = rate > best ? rate : best;
+    }
+    volatile double sink = 0;
+    for (int k = 0; k < 8; k++)
+        sink = sink + x[k][0];
+    return best;
 }
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time of vgcm's force loop a local point and step, one core: undamaged, and through failure. Lines
- * of "name value unit", user CPU time. */
+/* Time of a whole step of vgcm, a local point, over the compression of the paper's specimen of
+ * about 8000 spheres through its peak: while elastic, with half of the points damaged, and on
+ * average. Everything that a step does is in it. Beside them, what the machine allows. */
 #include "bench.h"
 
 #include "vgcm/vgcm.h"
@@ -9,107 +10,134 @@
 
 extern const struct brc_model brc_model_vgcm;
 
-static size_t count_points(const struct brc_sim *sim)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < sim->pairs.n; i++)
-        if (vgcm_columns(&sim->pairs)->phase[i] != VGCM_SPHERE)
-            n += (size_t)sim->pairs.np[i];
-    return n;
-}
+enum { STEPS = 10, ELASTIC_REPEATS = 100 };
+/* Bytes that an elastic step moves a contact (rows of bodies stay in the cache): a, b, phase, kn,
+ * plane, rim, moment read; n, s, u read and written; f, ta, tb, gap written; f, ta, tb and two
+ * numbers read again for the sums on the grains. */
+static const double BYTES = 8 + 1 + 24 + 48 + 2 * 96 + 80 + 72 + 8;
+/* Additions and multiplications of doubles: frame and motion 190, strength 25, force of the affine
+ * field, twice with the ledger 100, forces on the grains 55, their sums 12. */
+static const double OPERATIONS = 382;
 
-static void report(const char *name, const char *what, double value, const char *unit)
-{
-    printf("vgcm_%s_%s %.4g %s\n", name, what, value, unit);
-}
+struct state {
+    size_t points, damaged, broken, contacts, rows_of_points;
+};
 
-/* Shares of rows that keep points of their own, and of points that are broken. */
-static void report_state(const struct brc_sim *sim, const char *name)
+static struct state look(const struct brc_sim *sim)
 {
     const struct brc_contacts *c = &sim->pairs;
-    size_t n_facets = 0, n_points = 0;
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    struct state s = {0};
     for (size_t i = 0; i < c->n; i++) {
-        n_facets += vgcm_columns(c)->phase[i] != VGCM_SPHERE;
-        n_points += vgcm_columns(c)->phase[i] == VGCM_POINTS;
+        uint8_t phase = vgcm_columns(c)->phase[i];
+        s.contacts += phase != VGCM_SPHERE;
+        s.points += phase != VGCM_SPHERE ? (size_t)c->np[i] : 0;
+        s.rows_of_points += phase == VGCM_POINTS;
+        if (phase != VGCM_POINTS)
+            continue;
+        for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
+            s.damaged += p->dn[j] + p->ds[j] > 0;
+            s.broken += p->dn[j] + p->ds[j] >= 1;
+        }
     }
-    report(name, "points_per_contact", (double)count_points(sim) / (double)n_facets, "1");
-    report(name, "sphere_rows", (double)(c->n - n_facets) / (double)n_facets, "1");
-    report(name, "contacts_with_damage", (double)n_points / (double)n_facets, "1");
-    report(name, "points_broken", (double)sim->events.table.n / (double)count_points(sim), "1");
+    return s;
 }
 
-/* Least time of a call over batches of a few calls: other work on the machine only adds to it. */
-static double least_time(struct brc_sim *sim, void (*call)(struct brc_sim *), int batches)
+static void make(struct brc_context *ctx, struct brc_specimen *specimen, struct brc_sim *sim)
 {
-    double least = HUGE_VAL;
-    for (int k = 0; k < batches; k++) {
-        double begin = cpu_seconds();
-        for (int i = 0; i < 5; i++)
-            call(sim);
-        least = fmin(least, (cpu_seconds() - begin) / 5);
-    }
-    return least;
-}
-
-static void call_step(struct brc_sim *sim)
-{
-    must(sim->ctx, brc_sim_step(sim));
-}
-
-/* The loop over the contacts once more at the present state, without a displacement. */
-static void call_forces(struct brc_sim *sim)
-{
-    double dt = sim->dt;
-    sim->dt = 0;
-    sim->model.forces(sim, sim->state);
-    sim->dt = dt;
-}
-
-static void time_steps(struct brc_sim *sim, const char *name)
-{
-    double points = (double)count_points(sim);
-    report(name, "step", 1e9 * least_time(sim, call_step, 40) / points, "ns/point");
-    report(name, "forces", 1e9 * least_time(sim, call_forces, 40) / points, "ns/point");
-    report_state(sim, name);
-}
-
-static void run(struct brc_context *ctx, const struct brc_specimen *specimen, const char *name,
-                const char *ledger, int before)
-{
+    struct brc_specimen_params s;
     struct vgcm_params p;
     struct brc_test_params t;
     struct brc_run_params r;
-    struct brc_sim sim;
+    must(ctx, brc_params_defaults(ctx, brc_specimen_param_list, &s));
     must(ctx, brc_params_defaults(ctx, brc_model_vgcm.params, &p));
     must(ctx, brc_params_defaults(ctx, brc_test_param_list, &t));
     must(ctx, brc_params_defaults(ctx, brc_run_param_list, &r));
-    set(ctx, brc_model_vgcm.params, &p, "interaction", "all");
-    set(ctx, brc_test_param_list, &t, "loading", "fixed");
-    set(ctx, brc_test_param_list, &t, "rate", "2e-6 1/s");
-    set(ctx, brc_run_param_list, &r, "ledger", ledger);
-    must(ctx, brc_sim_create(ctx, &sim, &brc_model_vgcm, &p, specimen, &t, &r));
-    for (int i = 0; i < before; i++)
-        must(ctx, brc_sim_step(&sim));
-    time_steps(&sim, name);
-    brc_sim_free(&sim);
+    set(ctx, brc_test_param_list, &t, "strain_max", "0.02");
+    set(ctx, brc_test_param_list, &t, "stop_drop", "0.5");
+    if (getenv("BENCH_SIMD"))
+        set(ctx, brc_run_param_list, &r, "simd", getenv("BENCH_SIMD"));
+    must(ctx, brc_specimen_create(ctx, &s, specimen));
+    must(ctx, brc_sim_create(ctx, sim, &brc_model_vgcm, &p, specimen, &t, &r));
+}
+
+/* ns a point and step, over STEPS steps. */
+static double time_steps(struct brc_sim *sim, size_t points, double *total)
+{
+    double begin = cpu_seconds();
+    for (int i = 0; i < STEPS; i++)
+        must(sim->ctx, brc_sim_step(sim));
+    double spent = cpu_seconds() - begin;
+    *total += spent;
+    return 1e9 * spent / STEPS / (double)points;
+}
+
+static void report(const char *name, struct bench_times *t, double bar, double limit)
+{
+    struct bench_value v = {name, bench_quantile(t, 0.5), "ns/point", bar, limit, 0};
+    v.spread = bench_quantile(t, 0.75) - bench_quantile(t, 0.25);
+    if (t->n > 0)
+        bench_report(&v);
+}
+
+/* Least time of an elastic step a point, by bandwidth and by arithmetic [ns]. */
+static double machine_limit(const struct state *s)
+{
+    double per_point = (double)s->contacts / (double)s->points;
+    size_t size = (size_t)(BYTES * (double)s->contacts);
+    double near = bench_triad(size / 8), far = bench_triad((size_t)1 << 25),
+           rate = bench_arithmetic();
+    bench_report(&(struct bench_value){"machine_triad_same_size", near, "GB/s", 0, 0, 0});
+    bench_report(&(struct bench_value){"machine_triad_memory", far, "GB/s", 0, 0, 0});
+    bench_report(&(struct bench_value){"machine_arithmetic", rate, "Gflop/s", 0, 0, 0});
+    double bytes = BYTES * per_point / near, operations = OPERATIONS * per_point / rate;
+    printf(
+        "vgcm: %zu contacts, %zu points; elastic: %.3g bytes a point take %.3g ns, %.3g operations "
+        "%.3g ns\n",
+        s->contacts, s->points, BYTES * per_point, bytes, OPERATIONS * per_point, operations);
+    return fmax(bytes, operations);
 }
 
 int main(void)
 {
+    static struct bench_times elastic, damaged;
     struct brc_context ctx = BRC_CONTEXT_INIT;
-    struct brc_specimen_params s;
     struct brc_specimen specimen;
+    struct brc_sim sim;
+    double total = 0, steps = 0;
     ctx.quiet = 1;
-    must(&ctx, brc_params_defaults(&ctx, brc_specimen_param_list, &s));
-    set(&ctx, brc_specimen_param_list, &s, "shape", "box");
-    set(&ctx, brc_specimen_param_list, &s, "grains", "grid");
-    set(&ctx, brc_specimen_param_list, &s, "size", "5 cm, 5 cm, 5 cm");
-    set(&ctx, brc_specimen_param_list, &s, "cells", "10, 10, 10");
-    must(&ctx, brc_specimen_create(&ctx, &s, &specimen));
-    run(&ctx, &specimen, "elastic", "off", 10);
-    run(&ctx, &specimen, "elastic_ledger", "on", 10);
-    run(&ctx, &specimen, "failure", "off", 2500);
-    run(&ctx, &specimen, "failure_ledger", "on", 2500);
+    make(&ctx, &specimen, &sim);
+    struct state s = look(&sim), half = {0};
+    double limit = machine_limit(&s);
+    while (elastic.n < ELASTIC_REPEATS)
+        bench_note(&elastic, time_steps(&sim, s.points, &total));
+    report("vgcm_elastic_ns_point", &elastic, 5, limit);
+    const char *short_run = getenv("BENCH_SHORT");
+    while (!brc_rig_done(&sim) && !short_run) {
+        double time = time_steps(&sim, s.points, &total);
+        if (sim.step % 100 == 0)
+            s = look(&sim);
+        double part = (double)s.damaged / (double)s.points;
+        if (part > 0.45 && part < 0.55) {
+            bench_note(&damaged, time);
+            half = s;
+        }
+    }
+    steps = (double)sim.step;
+    report("vgcm_damaged_ns_point", &damaged, 7, limit);
+    printf(
+        "vgcm: then %.3g of the points were damaged, %.3g broken, %.3g of the contacts by points\n",
+        (double)half.damaged / (double)s.points, (double)half.broken / (double)s.points,
+        (double)half.rows_of_points / (double)s.contacts);
+    if (!short_run) {
+        double mean = 1e9 * total / steps / (double)s.points;
+        bench_report(
+            &(struct bench_value){"vgcm_ucs_mean_ns_point", mean, "ns/point", 8, limit, 0});
+        bench_report(&(struct bench_value){"ucs_8000_vgcm_cpu_s", total, "s", 20, 0, 0});
+        printf("vgcm: %.0f steps, %.3g of the points damaged, %.3g broken at the end\n", steps,
+               (double)s.damaged / (double)s.points, (double)s.broken / (double)s.points);
+    }
+    brc_sim_free(&sim);
     brc_specimen_free(&specimen);
     return 0;
 }
