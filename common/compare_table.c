@@ -85,7 +85,7 @@ static double cost_value(const struct brc_summary *s, int row)
 {
     const double value[] = {(double)s->n_bodies, s->n_contacts_mean, (double)s->n_points,
                             (double)s->steps,    s->cpu_s,           s->ns_per_contact_step,
-                            s->energy_residual,  s->unbalanced_max};
+                            s->energy_residual,  s->energy_drift,    s->unbalanced_max};
     return value[row];
 }
 
@@ -101,6 +101,7 @@ static void put_costs(FILE *out, const struct brc_summary *const *summary, int n
                {"CPU", "s", false},
                {"per contact and step", "ns", false},
                {"energy residual", "", false},
+               {"energy drift", "", false},
                {"unbalanced, largest", "", false}};
     for (int k = 0; k < (int)(sizeof row / sizeof row[0]); k++) {
         put_label(out, row[k].name, row[k].unit);

@@ -173,7 +173,6 @@ static void set_mass(struct brc_sim *sim, size_t i, double mass, double inertia)
     brc_set(b->inertia[i], inertia, inertia, inertia);
 }
 
-/* Sums of the contacts' k over the rows of a body. */
 static void add_stiffness(const struct brc_contacts *c, size_t body, double k[2])
 {
     for (size_t r = c->adjacent_first[body]; r < c->adjacent_first[body + 1]; r++) {
@@ -183,17 +182,19 @@ static void add_stiffness(const struct brc_contacts *c, size_t body, double k[2]
     }
 }
 
+void brc_integrate_stiffness(const struct brc_sim *sim, size_t body, double k[2])
+{
+    k[0] = k[1] = 0;
+    add_stiffness(&sim->pairs, body, k);
+    add_stiffness(&sim->platens, body, k);
+}
+
 void brc_integrate_scale_masses(struct brc_sim *sim)
 {
-    if (sim->k_seen[0] == sim->pairs.k_version && sim->k_seen[1] == sim->platens.k_version)
-        return;
-    sim->k_seen[0] = sim->pairs.k_version;
-    sim->k_seen[1] = sim->platens.k_version;
     struct brc_bodies *b = &sim->bodies;
     for (size_t i = 0; i < b->n_grains; i++) {
-        double k[2] = {0, 0};
-        add_stiffness(&sim->pairs, i, k);
-        add_stiffness(&sim->platens, i, k);
+        double k[2];
+        brc_integrate_stiffness(sim, i, k);
         /* K_t = 4 sum k, K_theta = 4 sum k r^2: omega dt <= 2 with dt = 1 is proved for margin 1 */
         double mass = fmax(b->mass[i], sim->run.mass_margin * 0.25 * 4 * k[0]); /* eq:vgcm:26 */
         double inertia =

@@ -17,6 +17,8 @@ void brc_integrate_rotate(double q[4], double w[3], const double l[3], const dou
                           double dt);
 /* w = R I^-1 R^T l */
 void brc_integrate_spin(double w[3], const double q[4], const double l[3], const double inertia[3]);
+/* Sums of the contacts' k over the rows of a body: of k, and of k |r|^2. */
+void brc_integrate_stiffness(const struct brc_sim *sim, size_t body, double k[2]);
 /* Quasi-static regime: masses and inertias grow to what the contacts' k needs for a step of 1
  * (eq:vgcm:26, eq:vgcm:27 with the bound K_t = 4 sum k). They never shrink, and momentum is kept;
  * the kinetic energy lost goes to the ledger. */

@@ -35,5 +35,9 @@ double brc_ledger_imbalance(const struct brc_ledger *l);
 /* |imbalance| / (|boundary work| + |work of gravity| + energy at the start); 1 when those are 0 and
  * the imbalance is not. */
 double brc_ledger_residual(const struct brc_ledger *l);
+/* |stored terms - energy stored by the state alone| over the same: the error of the time step, to
+ * which the imbalance is blind, because a force's work over a step is taken by the trapezoid rule
+ * that the integrator itself follows. */
+double brc_ledger_drift(const struct brc_ledger *l, const double stored[3]);
 
 #endif

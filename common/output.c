@@ -120,6 +120,7 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
     json_number_entry(out, "wall_s", s->wall_s);
     json_number_entry(out, "ns_per_contact_step", s->ns_per_contact_step);
     json_number_entry(out, "energy_residual", s->energy_residual);
+    json_number_entry(out, "energy_drift", s->energy_drift);
     json_number_entry(out, "unbalanced_max", s->unbalanced_max);
     fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
     json_results(out, s);

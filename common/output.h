@@ -48,7 +48,7 @@ struct brc_summary {
     double dt;
     double cpu_s, wall_s;       /* of the step loop, all parts of a resumed run together */
     double ns_per_contact_step; /* cpu_s over steps and n_contacts_mean */
-    double energy_residual, unbalanced_max;
+    double energy_residual, energy_drift, unbalanced_max;
     uint64_t state_hash;
     int n_results;
     struct brc_summary_value results[BRC_SUMMARY_MAX_RESULTS];

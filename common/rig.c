@@ -22,7 +22,8 @@ static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_
 static const double GAIN_DOWN = 0.02, GAIN_UP = 0.002;
 /* seconds (steps) to strain_max at the automatic rate */
 static const double FIRST_STEPS = 1e5;
-enum { UNBALANCED_STEPS = 10 }; /* steps between two measures of the unbalanced force */
+static const double SLOWEST = 0.01; /* automatic smallest rate over the first one */
+enum { UNBALANCED_STEPS = 10 };     /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
 {
@@ -72,6 +73,8 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     rig->params = *test;
     if (test->rate == 0)
         rig->params.rate = test->strain_max / FIRST_STEPS;
+    if (test->rate_min == 0)
+        rig->params.rate_min = SLOWEST * rig->params.rate;
     rig->n_platens = brc_rig_platens(test);
     rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
     rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;
@@ -130,7 +133,7 @@ static void adapt_rate(struct brc_sim *sim)
     double change = ratio > 1 ? -GAIN_DOWN * UNBALANCED_STEPS * fmin(log(ratio), 1)
                               : GAIN_UP * UNBALANCED_STEPS * (1 - ratio);
     double rate = rig->rate * exp(change);
-    rig->rate = fmin(fmax(rate, t->rate), t->rate_max);
+    rig->rate = fmin(fmax(rate, t->rate_min), t->rate_max);
 }
 
 /* Least-squares slope of the displacement along k against the place along k, over the gauge grains;

@@ -351,19 +351,22 @@ static void measure(const struct run *r, struct brc_summary *s)
     const struct brc_sim *sim = &r->sim;
     const struct brc_job *job = r->order->job;
     struct brc_result result[BRC_MAX_RESULTS];
-    *s = (struct brc_summary){.seed = job->specimen.seed,
-                              .n_bodies = sim->bodies.n,
-                              .n_facets = sim->specimen->facets.n_facets,
-                              .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
-                              .n_contacts_listed = sim->pairs.n + sim->platens.n,
-                              .steps = sim->step,
-                              .dt = sim->dt,
-                              .cpu_s = r->counts.cpu_s,
-                              .wall_s = r->counts.wall_s,
-                              .energy_residual =
-                                  sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
-                              .unbalanced_max = brc_rig_unbalanced_max(sim),
-                              .state_hash = brc_sim_hash(sim)};
+    double stored[3];
+    sim->model.energy(sim, sim->state, stored);
+    *s = (struct brc_summary){
+        .seed = job->specimen.seed,
+        .n_bodies = sim->bodies.n,
+        .n_facets = sim->specimen->facets.n_facets,
+        .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
+        .n_contacts_listed = sim->pairs.n + sim->platens.n,
+        .steps = sim->step,
+        .dt = sim->dt,
+        .cpu_s = r->counts.cpu_s,
+        .wall_s = r->counts.wall_s,
+        .energy_residual = sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
+        .energy_drift = sim->run.ledger ? brc_ledger_drift(&sim->ledger, stored) : NAN,
+        .unbalanced_max = brc_rig_unbalanced_max(sim),
+        .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
     snprintf(s->title, sizeof s->title, "%s", job->file.head.title);
     snprintf(s->case_name, sizeof s->case_name, "%s", job->name);

@@ -25,8 +25,6 @@ const struct brc_scalar brc_sim_scalars[] = {BRC_SIM_SCALARS(SIM_SCALAR) BRC_RIG
                                                 offsetof(struct brc_sim, ledger.start)}};
 const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scalars[0]);
 
-/* steps between two looks at whether the stable limit must be estimated again */
-enum { LIMIT_STEPS = 50 };
 /* steps between two looks at the memory that moved point ranges have left behind */
 enum { TIDY_STEPS = 100 };
 /* growth of the largest sum k / m that calls for a new estimate */
@@ -93,18 +91,10 @@ static int check_travel(struct brc_sim *sim)
 static double stiffness_bound(const struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
-    const struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens};
     double bound = 0;
     for (size_t i = 0; i < b->n_grains; i++) {
-        double k[2] = {0, 0};
-        for (int s = 0; s < 2; s++) {
-            const struct brc_contacts *c = sets[s];
-            for (size_t r = c->adjacent_first[i]; r < c->adjacent_first[i + 1]; r++) {
-                k[0] += c->k[c->adjacent[r] / 2][0];
-                k[1] += c->k[c->adjacent[r] / 2][1 + c->adjacent[r] % 2];
-            }
-        }
-        double least = fmin(b->inertia[i][0], fmin(b->inertia[i][1], b->inertia[i][2]));
+        double k[2], least = fmin(b->inertia[i][0], fmin(b->inertia[i][1], b->inertia[i][2]));
+        brc_integrate_stiffness(sim, i, k);
         bound = fmax(bound, k[0] / b->mass[i]);
         if (sim->model.flags & BRC_MODEL_ROTATES)
             bound = fmax(bound, k[1] / least);
@@ -112,7 +102,7 @@ static double stiffness_bound(const struct brc_sim *sim)
     return bound;
 }
 
-/* Dynamic regime: keeps dt below the stable limit of the present springs. */
+/* Dynamic regime: keeps dt below the stable limit of the springs that act. */
 static int update_dt(struct brc_sim *sim)
 {
     double bound = stiffness_bound(sim);
@@ -133,6 +123,20 @@ static int update_dt(struct brc_sim *sim)
                  "nothing is in contact yet, so there is no automatic time step: give run.dt");
     else if (sim->dt == 0 || sim->dt > sim->run.dt_margin * sim->dt_limit)
         sim->dt = sim->run.dt_margin * sim->dt_limit;
+    return 0;
+}
+
+/* Masses (quasi-static) or time step (dynamic) follow the stiffness of the contacts from the first
+ * step on in which it has changed. */
+static int follow_stiffness(struct brc_sim *sim)
+{
+    if (sim->pairs.k_version == sim->k_seen[0] && sim->platens.k_version == sim->k_seen[1])
+        return 0;
+    sim->k_seen[0] = sim->pairs.k_version;
+    sim->k_seen[1] = sim->platens.k_version;
+    if (sim->run.regime == BRC_DYNAMIC)
+        return update_dt(sim);
+    brc_integrate_scale_masses(sim);
     return 0;
 }
 
@@ -190,13 +194,9 @@ static int start(struct brc_sim *sim)
     double stored[3];
     compute_forces(sim);
     sim->ledger = (struct brc_ledger){0};
-    if (sim->run.regime == BRC_QUASI_STATIC) {
-        sim->dt = 1;
-        sim->k_seen[0] = sim->k_seen[1] = -1;
-        brc_integrate_scale_masses(sim);
-    } else {
-        BRC_TRY(update_dt(sim));
-    }
+    sim->dt = sim->run.regime == BRC_QUASI_STATIC ? 1 : 0;
+    sim->k_seen[0] = sim->k_seen[1] = -1;
+    BRC_TRY(follow_stiffness(sim));
     sim->ledger = (struct brc_ledger){0};
     /* from v_0 back to v_-1/2, then the first whole kick */
     double alpha = sim->damping_alpha;
@@ -290,10 +290,7 @@ int brc_sim_step(struct brc_sim *sim)
     compute_forces(sim);
     BRC_TRY(sim->ctx->code);
     BRC_TRY(brc_rig_step(sim));
-    if (sim->run.regime == BRC_QUASI_STATIC)
-        brc_integrate_scale_masses(sim);
-    else if (sim->step % LIMIT_STEPS == 0)
-        BRC_TRY(update_dt(sim));
+    BRC_TRY(follow_stiffness(sim));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
         return brc_blowup_number(sim);

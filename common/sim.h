@@ -21,7 +21,7 @@ enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
         "dynamic: true mass, viscous contact damping; quasi_static: scaled mass, step 1, local " \
         "damping")                                                                               \
     REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error") \
-    REAL(dt_margin, "1", "0.8", "(0, 1)", "dynamic, automatic: part of the stable limit")        \
+    REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit")        \
     REAL(mass_margin, "1", "1.2", "[1, 100]", "quasi_static: factor on the scaled masses")       \
     REAL(local_damping, "1", "0.7", "[0, 1)", "quasi_static: local non-viscous damping alpha")   \
     CHOICE(damping, "cartesian|along_velocity", "cartesian",                                     \
@@ -94,7 +94,7 @@ struct brc_sim {
     BRC_SIM_SCALARS(BRC_SCALAR_MEMBER)
     double skin;          /* m */
     double damping_alpha; /* local damping in use: 0 in the dynamic regime */
-    int64_t k_seen[2];    /* k_version of pairs and platens at the last mass scaling */
+    int64_t k_seen[2];    /* k_version of pairs and platens when dt or masses were last set */
 };
 
 /* A scalar of struct brc_sim (ledger and rig included) by its offset. */
