@@ -5,6 +5,7 @@
 #include "vec.h"
 
 #include <gsl/gsl_fit.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,13 +18,13 @@ const struct brc_param_list brc_test_param_list = BRC_PARAMS(test_params, struct
 static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
-/* Adaptive loading: the rate follows the unbalanced force with this gain a step. It falls faster
- * than it grows, so that a burst of breaks is met at once. */
-static const double GAIN_DOWN = 0.02, GAIN_UP = 0.002;
+/* Adaptive loading: part by which the cruising rate changes a step at most, and by which the rate
+ * follows it. */
+static const double CRUISE_GAIN = 0.002, RATE_GAIN = 0.05;
 /* seconds (steps) to strain_max at the automatic rate */
 static const double FIRST_STEPS = 1e5;
-static const double SLOWEST = 0.01; /* automatic smallest rate over the first one */
-enum { UNBALANCED_STEPS = 10 };     /* steps between two measures of the unbalanced force */
+static const double SLOWEST = 0.1; /* automatic smallest rate over the first one */
+enum { UNBALANCED_STEPS = 10 };    /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
 {
@@ -92,7 +93,7 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     }
     if (rig->n_platens == 0)
         return 0;
-    rig->rate = rig->params.rate;
+    rig->rate = rig->cruise = rig->params.rate;
     set_platen_velocities(sim);
     double middle = 0.5 * (low[rig->axis] + high[rig->axis]);
     for (size_t i = 0; i < sim->bodies.n_grains; i++)
@@ -104,6 +105,11 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
 void brc_rig_free(struct brc_sim *sim)
 {
     brc_table_free(&sim->rig.curve.table);
+}
+
+static double clip(double x, double limit)
+{
+    return fmin(fmax(x, -limit), limit);
 }
 
 /* Mean unbalanced force on a grain over mean contact force. */
@@ -124,15 +130,17 @@ static double unbalanced_ratio(const struct brc_sim *sim)
     return unbalanced / (double)b->n_grains / (contact / (double)active);
 }
 
-/* Adaptive loading: down at once when the unbalanced force is above its target, slowly up below. */
+/* Adaptive loading. The cruising rate drifts to where the unbalanced force is at its target; a
+ * burst of breaks brakes the rate in proportion, and lets go of it as the burst dies away. */
 static void adapt_rate(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
     const struct brc_test_params *t = &rig->params;
-    double ratio = rig->unbalanced / t->target;
-    double change = ratio > 1 ? -GAIN_DOWN * UNBALANCED_STEPS * fmin(log(ratio), 1)
-                              : GAIN_UP * UNBALANCED_STEPS * (1 - ratio);
-    double rate = rig->rate * exp(change);
+    double excess = log(fmax(rig->unbalanced / t->target, DBL_MIN));
+    double cruise = rig->cruise * exp(-CRUISE_GAIN * UNBALANCED_STEPS * clip(excess, 1));
+    rig->cruise = fmin(fmax(cruise, t->rate_min), t->rate_max);
+    double change = log(rig->cruise / rig->rate) - fmax(excess, 0);
+    double rate = rig->rate * exp(clip(change, RATE_GAIN * UNBALANCED_STEPS));
     rig->rate = fmin(fmax(rate, t->rate_min), t->rate_max);
 }
 

@@ -102,13 +102,14 @@ static double stiffness_bound(const struct brc_sim *sim)
     return bound;
 }
 
-/* Dynamic regime: keeps dt below the stable limit of the springs that act. */
-static int update_dt(struct brc_sim *sim)
+/* Dynamic regime: keeps dt below the stable limit of the springs that act, or may soon (is_listed:
+ * the candidates are new). */
+static int update_dt(struct brc_sim *sim, bool is_listed)
 {
     double bound = stiffness_bound(sim);
-    if (sim->dt > 0 && bound <= LIMIT_GROWTH * sim->stiffness_bound)
+    if (!is_listed && bound <= LIMIT_GROWTH * sim->stiffness_bound)
         return 0;
-    sim->stiffness_bound = bound;
+    sim->stiffness_bound = fmax(bound, sim->stiffness_bound);
     BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
     if (sim->run.dt > sim->dt_limit)
         BRC_FAIL(
@@ -128,14 +129,16 @@ static int update_dt(struct brc_sim *sim)
 
 /* Masses (quasi-static) or time step (dynamic) follow the stiffness of the contacts from the first
  * step on in which it has changed. */
-static int follow_stiffness(struct brc_sim *sim)
+static int follow_stiffness(struct brc_sim *sim, bool is_listed)
 {
-    if (sim->pairs.k_version == sim->k_seen[0] && sim->platens.k_version == sim->k_seen[1])
+    bool is_same =
+        sim->pairs.k_version == sim->k_seen[0] && sim->platens.k_version == sim->k_seen[1];
+    if (is_same && !is_listed)
         return 0;
     sim->k_seen[0] = sim->pairs.k_version;
     sim->k_seen[1] = sim->platens.k_version;
     if (sim->run.regime == BRC_DYNAMIC)
-        return update_dt(sim);
+        return update_dt(sim, is_listed);
     brc_integrate_scale_masses(sim);
     return 0;
 }
@@ -196,7 +199,7 @@ static int start(struct brc_sim *sim)
     sim->ledger = (struct brc_ledger){0};
     sim->dt = sim->run.regime == BRC_QUASI_STATIC ? 1 : 0;
     sim->k_seen[0] = sim->k_seen[1] = -1;
-    BRC_TRY(follow_stiffness(sim));
+    BRC_TRY(follow_stiffness(sim, true));
     sim->ledger = (struct brc_ledger){0};
     /* from v_0 back to v_-1/2, then the first whole kick */
     double alpha = sim->damping_alpha;
@@ -280,6 +283,7 @@ static void add_gravity_work(struct brc_sim *sim)
 int brc_sim_step(struct brc_sim *sim)
 {
     size_t events = sim->events.table.n;
+    int64_t listings = sim->n_listings;
     double dt_before = sim->dt;
     brc_integrate_drift(sim);
     sim->ledger.local_damping += sim->damping_ahead;
@@ -290,7 +294,7 @@ int brc_sim_step(struct brc_sim *sim)
     compute_forces(sim);
     BRC_TRY(sim->ctx->code);
     BRC_TRY(brc_rig_step(sim));
-    BRC_TRY(follow_stiffness(sim));
+    BRC_TRY(follow_stiffness(sim, sim->n_listings > listings));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
         return brc_blowup_number(sim);

@@ -45,6 +45,7 @@ extern const struct brc_param_list brc_run_param_list;
  */
 #define BRC_RIG_SCALARS(X)                                                    \
     X(double, rate, "s-1", "strain rate")                                     \
+    X(double, cruise, "s-1", "adaptive: rate between bursts of breaks")       \
     X(double, strain, "1", "platen strain, in the sense of the test")         \
     X(double, force, "N", "mean platen force now, in the sense of the test")  \
     X(double, force_sum, "N", "sum of force since the last row of the curve") \

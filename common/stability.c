@@ -117,6 +117,27 @@ static int largest_eigenvalue(struct brc_context *ctx, const struct brc_springs 
     return code;
 }
 
+/* Takes the springs that do not act yet out of the list; returns the largest eigenvalue (a bound)
+ * that one of them has with its two bodies alone. */
+static double take_near(struct brc_springs *springs, const double (*root)[2])
+{
+    double largest = 0;
+    size_t kept = 0;
+    for (size_t i = 0; i < springs->n; i++) {
+        const struct brc_spring *s = &springs->spring[i];
+        const double *ra = root[s->a], *rb = root[s->b];
+        if (!s->is_near) {
+            springs->spring[kept++] = *s;
+            continue;
+        }
+        double inverse = ra[0] * ra[0] + rb[0] * rb[0] + ra[1] * ra[1] * brc_norm2(s->ra) +
+                         rb[1] * rb[1] * brc_norm2(s->rb);
+        largest = fmax(largest, fmax(s->kn, s->ks) * inverse);
+    }
+    springs->n = kept;
+    return largest;
+}
+
 int brc_stability_limit(struct brc_sim *sim, double *dt_limit)
 {
     struct brc_springs springs = {0};
@@ -125,7 +146,9 @@ int brc_stability_limit(struct brc_sim *sim, double *dt_limit)
     int code = root ? sim->model.springs(sim, sim->state, &springs) : BRC_ERR_MEMORY;
     if (code == 0) {
         inverse_masses(sim, root);
+        double near = take_near(&springs, root);
         code = largest_eigenvalue(sim->ctx, &springs, root, sim->bodies.n, &eigenvalue);
+        eigenvalue = fmax(eigenvalue, near);
     }
     eigenvalue *= 1 + sim->damping_alpha;
     *dt_limit = eigenvalue > 0 ? 2 / sqrt(eigenvalue) : HUGE_VAL;

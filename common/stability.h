@@ -11,6 +11,7 @@ struct brc_spring {
     int32_t a, b;
     double ra[3], rb[3], n[3];
     double kn, ks, kt;
+    bool is_near; /* does not act yet, but may in the next step */
 };
 
 struct brc_springs {
@@ -23,8 +24,9 @@ int brc_springs_add(struct brc_context *ctx, struct brc_springs *s,
                     const struct brc_spring *spring);
 void brc_springs_free(struct brc_springs *s);
 
-/* Largest stable step 2/omega_max [s] for the masses in use; local damping alpha lowers it by
- * sqrt(1 + alpha). HUGE_VAL when nothing is stiff. */
+/* Largest stable step 2/omega_max [s] for the masses in use: of all springs that act together, and
+ * of each that is near with its two bodies alone; local damping alpha lowers it by sqrt(1 + alpha).
+ * HUGE_VAL when nothing is stiff. */
 int brc_stability_limit(struct brc_sim *sim, double *dt_limit);
 
 #endif

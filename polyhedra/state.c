@@ -115,6 +115,51 @@ static void add_bond(struct springs *s, int32_t a, int32_t b, const struct poly_
     add_spring(s, a, b, r->x, &spring);
 }
 
+static bool touches(const struct brc_contacts *c, size_t row)
+{
+    const struct poly_points *points = c->point_columns;
+    for (int32_t k = 0; k < c->np[row]; k++)
+        if (points->active[(size_t)c->p0[row] + (size_t)k])
+            return true;
+    return false;
+}
+
+/* A pair that is near without touching may touch in the next step: one contact counts already, at x
+ * below the centre of a along n, and as stiff across n as along it, because its true place is
+ * beside that line. */
+static void add_near(struct springs *s, const struct brc_contacts *c, size_t row, const double x[3],
+                     const double n[3])
+{
+    double k = fmax(s->kn, s->kt);
+    struct brc_spring spring = {.kn = k, .ks = k, .is_near = true};
+    brc_copy(spring.n, n);
+    if (!touches(c, row))
+        add_spring(s, c->a[row], c->b[row], x, &spring);
+}
+
+static void add_near_grains(struct springs *s, size_t row)
+{
+    const struct brc_contacts *c = &s->sim->pairs;
+    const double *xa = s->sim->bodies.x[c->a[row]];
+    double d[3], n[3], x[3];
+    brc_sub(d, s->sim->bodies.x[c->b[row]], xa);
+    brc_scale(n, d, 1 / brc_norm(d));
+    brc_copy(x, xa);
+    brc_axpy(x, 0.5, d);
+    add_near(s, c, row, x, n);
+}
+
+static void add_near_platen(struct springs *s, size_t row)
+{
+    const struct brc_contacts *c = &s->sim->platens;
+    const double *n = brc_sim_platen(s->sim, c->b[row])->n;
+    double d[3], x[3];
+    brc_copy(x, s->sim->bodies.x[c->a[row]]);
+    brc_sub(d, s->sim->bodies.x[c->b[row]], x);
+    brc_axpy(x, brc_dot(d, n), n);
+    add_near(s, c, row, x, n);
+}
+
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
 {
     const struct poly_state *st = state;
@@ -127,6 +172,8 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
     for (size_t row = 0; row < sim->pairs.n; row++)
         if (bond_of_row(&r, &bond, sim, st, row))
             add_bond(&s, sim->pairs.a[row], sim->pairs.b[row], &bond, &r);
+        else
+            add_near_grains(&s, row);
     const struct brc_contacts *c = &sim->platens;
     for (size_t row = 0; row < c->n; row++) {
         struct poly_touch t;
@@ -134,8 +181,10 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
         for (int32_t k = 0; k < c->np[row]; k++)
             if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k))
                 add_touch(&s, c->a[row], c->b[row], &t, mu);
-        if (c->status[row] != BRC_INTACT)
+        if (c->status[row] != BRC_INTACT) {
+            add_near_platen(&s, row);
             continue;
+        }
         poly_hold_law(&r, sim, st, row, &bond);
         add_bond(&s, c->a[row], c->b[row], &bond, &r);
     }

@@ -366,6 +366,20 @@ static void vgcm_cell_on_a_platen(void **state)
     check_incline(*state, true, 0, build_cell_on_platen);
 }
 
+/* The automatic step is below the limit of a contact before the two touch, so that the impact is as
+ * elastic as the step makes it. */
+static void the_step_meets_an_impact(void **state)
+{
+    struct fixture *f = *state;
+    const double v[3] = {-1e-3, 0, 0};
+    build_polyhedra(f, "mu: 0; gn: 0 1/s", 0);
+    double limit = 2 * sqrt(effective_mass(f) / K);
+    CHECK_BETWEEN(f->sim.dt, 0.2 * limit, 0.5 * limit);
+    struct impact r = impact(f, v, BRC_PI * sqrt(effective_mass(f) / K));
+    assert_true(r.largest_f > 0);
+    CHECK_NEAR(r.e, 1, 0.1, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -379,6 +393,7 @@ int main(void)
         FIXTURE_TEST(block_on_a_slab),
         FIXTURE_TEST(block_on_a_platen),
         FIXTURE_TEST(vgcm_cell_on_a_platen),
+        FIXTURE_TEST(the_step_meets_an_impact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
