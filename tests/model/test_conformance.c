@@ -258,9 +258,12 @@ static void forces_turn_with_the_pack(void **state)
 }
 
 /* A free pack is set in random motion, without any damping. */
-static void set_in_motion(struct fixture *f, const struct brc_model *model, const char *settings,
-                          const char *run, double speed)
+static void set_in_motion(struct fixture *f, const struct brc_model *model, const char *run,
+                          double speed)
 {
+    char settings[256];
+    snprintf(settings, sizeof settings, "%s%s", subject(model).elastic,
+             fixture_is(model, "polyhedra") ? "; mu: 0; breakable: off" : "");
     fixture_free_sim(f, model, settings, fixture_is(model, "null") ? "dt: 1e-7 s" : run);
     for (size_t i = 0; i < f->sim.bodies.n_grains; i++) {
         double v[3], w[3];
@@ -280,11 +283,7 @@ static void ledger_is_the_stored_energy(void **state)
     struct fixture *f = *state;
     build_pack(f);
     for (int i = 0; i < fixture_n_models(); i++) {
-        struct subject s = subject(fixture_model(i));
-        char settings[256];
-        snprintf(settings, sizeof settings, "%s%s", s.elastic,
-                 fixture_is(fixture_model(i), "polyhedra") ? "; mu: 0; breakable: off" : "");
-        set_in_motion(f, fixture_model(i), settings, "dt_margin: 0.1", 0.02);
+        set_in_motion(f, fixture_model(i), "dt_margin: 0.1", 0.02);
         double total = f->sim.ledger.start, largest = 0;
         for (int k = 0; k < 400; k++) {
             double stored[3];
@@ -334,12 +333,9 @@ static void nothing_is_lost_in_breaking(void **state)
  * step is forced on the framework, which would refuse it. */
 static double energy_after(struct fixture *f, const struct brc_model *model, double factor, int n)
 {
-    struct subject s = subject(model);
-    char settings[256], run[64];
-    snprintf(settings, sizeof settings, "%s%s", s.elastic,
-             fixture_is(model, "polyhedra") ? "; mu: 0; breakable: off" : "");
+    char run[64];
     snprintf(run, sizeof run, "dt_margin: %g", fmin(factor, 0.95));
-    set_in_motion(f, model, settings, run, 1e-3);
+    set_in_motion(f, model, run, 1e-3);
     double start = f->sim.ledger.start, largest = 0;
     for (int i = 0; i < n; i++) {
         if (factor > 1)
@@ -358,11 +354,7 @@ static void the_default_step_keeps_the_energy(void **state)
     struct fixture *f = *state;
     build_pack(f);
     for (int i = 0; i < brc_registry_count(); i++) {
-        struct subject s = subject(brc_registry_at(i));
-        char settings[256];
-        snprintf(settings, sizeof settings, "%s%s", s.elastic,
-                 fixture_is(brc_registry_at(i), "polyhedra") ? "; mu: 0; breakable: off" : "");
-        set_in_motion(f, brc_registry_at(i), settings, "", 1e-3);
+        set_in_motion(f, brc_registry_at(i), "", 1e-3);
         double start = f->sim.ledger.start;
         fixture_steps(f, 1500);
         /* at 0.8 of the limit polyhedra come to 1.6 */
