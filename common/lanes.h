@@ -2,7 +2,7 @@
 /* Four doubles side by side, the unit in which hot loops work on every machine: compilers map them
  * to whatever registers there are. Nothing depends on the registers' width, and sums over lanes
  * have one order, so each machine gives the same bits. Loops are compiled for several instruction
- * sets and one is chosen as the program runs (enum brc_simd). */
+ * sets and one is chosen as the program runs (simd.h). */
 #ifndef BRC_LANES_H
 #define BRC_LANES_H
 
@@ -24,12 +24,6 @@ typedef int64_t brc_mask_loose __attribute__((vector_size(32), aligned(8), may_a
 typedef double brc_pair_loose __attribute__((vector_size(16), aligned(8), may_alias));
 typedef double brc_pair __attribute__((vector_size(16)));
 
-/* Instruction sets that loops are compiled for. */
-enum brc_simd { BRC_SIMD_BASE, BRC_SIMD_AVX2, BRC_SIMD_AVX512, BRC_N_SIMD };
-/* The set that the choice `run.simd` (0: the best that this machine has) stands for, and whether
- * this machine has it. */
-enum brc_simd brc_simd_of(int choice);
-int brc_simd_check(struct brc_context *ctx, int choice);
 BRC_LANES_INLINE brc_lanes brc_lanes_all(double x)
 {
     return (brc_lanes){x, x, x, x};

@@ -6,10 +6,10 @@
 #include "bodies.h"
 #include "contacts.h"
 #include "events.h"
-#include "lanes.h"
 #include "ledger.h"
 #include "model.h"
 #include "rig.h"
+#include "simd.h"
 #include "specimen.h"
 
 enum brc_regime { BRC_DYNAMIC, BRC_QUASI_STATIC };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "lanes.h"
+#include "simd.h"
 
 #include "error.h"
 
