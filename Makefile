@@ -31,10 +31,12 @@ objects = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$1))
 # C++ first, since it takes longest
 LIB_OBJECTS   := $(call objects,$(filter %.cpp,$(LIB_SOURCES)) $(filter %.c,$(LIB_SOURCES)))
 AID_OBJECTS   := $(call objects,$(AID_SOURCES))
-SAN_SOURCES   := $(if $(filter san,$(CFG)),$(wildcard tests/san/*.c))
+SAN_SOURCES   := $(if $(filter san,$(CFG)),$(wildcard tests/san/*.c))$(if $(filter fuzz,$(CFG)),tests/san/hdf5.c)
+FUZZ_SOURCES  := $(if $(filter fuzz,$(CFG)),$(wildcard tests/fuzz/*.c))
 SAN_OBJECTS   := $(call objects,$(SAN_SOURCES))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SOURCES))
 BENCH_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(BENCH_SOURCES))
+FUZZ_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SOURCES))
 PROGRAM       := $(if $(MAIN_SOURCES),$(BUILD)/breccia)
 
 # --- flags -----------------------------------------------------------------------------------------
@@ -57,8 +59,16 @@ FLAGS_release := -O2 -g
 FLAGS_debug   := -O0 -g -DBRC_DEBUG
 FLAGS_san     := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer -fsanitize=address,undefined \
                  -fno-sanitize-recover=all
+# libFuzzer is clang's; the C++ of the tessellation stays with g++ and is not instrumented
+FLAGS_fuzz    := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer
+FUZZ_FLAGS    := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 ifeq ($(FLAGS_$(CFG)),)
-$(error CFG=$(CFG) is unknown; known are release, debug and san)
+$(error CFG=$(CFG) is unknown; known are release, debug, san and fuzz)
+endif
+ifeq ($(CFG),fuzz)
+CC       := clang
+WARNINGS := -Wall -Wextra -Werror -Wno-psabi -Wno-unknown-pragmas
+WARNINGS_C := $(FUZZ_FLAGS)
 endif
 COMMON_FLAGS = $(FLAGS_$(CFG)) -fPIC -fno-semantic-interposition -ffp-contract=off -fno-math-errno \
                -D_POSIX_C_SOURCE=200809L -I. -I$(BUILD) $(DEPS_CFLAGS) $(WARNINGS)
@@ -119,7 +129,12 @@ $(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS
 	@echo "link $@"
 	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) $(DEPS_TEST_LIBS) -o $@
 
-ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES)
+$(FUZZ_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS) $(BUILD)/libaid.a $(BUILD)/libbreccia.a
+	@mkdir -p $(@D)
+	@echo "link $@"
+	@clang++ $(LINK_FLAGS) -fsanitize=fuzzer,address,undefined $^ $(DEPS_LIBS) -o $@
+
+ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TEST_SOURCES) $(BENCH_SOURCES) $(FUZZ_SOURCES)
 -include $(patsubst %.o,%.d,$(call objects,$(ALL_SOURCES)))
 
 # --- installing ------------------------------------------------------------------------------------
@@ -170,12 +185,19 @@ uninstall: ## removes what install has put there
 	@echo "removed breccia from $(DESTDIR)$(PREFIX)"
 
 # --- checking --------------------------------------------------------------------------------------
-.PHONY: check check-san check-mutants lint demo bench deps clean help
+.PHONY: check check-san check-mutants fuzz fuzz-programs lint demo bench deps clean help
 RUN_ENV := CFG=$(CFG) BUILD=$(BUILD) BRECCIA=$(BUILD)/breccia JOBS=$(JOBS)
 check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
 	@$(RUN_ENV) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
 check-san: ## all tests under the address and undefined-behaviour sanitizers
 	@+$(MAKE) --no-print-directory CFG=san check
+FUZZ_TIME ?= 600
+build/fuzz/tools: .ci/deps
+	@mkdir -p $(@D); .ci/deps fuzz $@
+fuzz: build/fuzz/tools ## look for bytes that break the readers of files, FUZZ_TIME seconds each (600)
+	@+$(MAKE) --no-print-directory CFG=fuzz fuzz-programs
+	@FUZZ_TIME=$(FUZZ_TIME) JOBS=$(JOBS) tests/fuzz/run
+fuzz-programs: $(FUZZ_PROGRAMS)
 check-mutants: all $(TEST_PROGRAMS) ## plant faults in the laws; the tests must find each
 	@if [ -x tests/mutants/run ]; then $(RUN_ENV) tests/mutants/run; else echo "no tests/mutants/run"; fi
 

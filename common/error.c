@@ -17,6 +17,10 @@ int brc_error_set(struct brc_context *ctx, int code, const char *file, int line,
     va_start(args, format);
     vsnprintf(ctx->message, sizeof ctx->message, format, args);
     va_end(args);
+    /* one line, whatever a bad file has put into it */
+    for (char *c = ctx->message; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
     return code;
 }
 
