@@ -185,7 +185,7 @@ uninstall: ## removes what install has put there
 	@echo "removed breccia from $(DESTDIR)$(PREFIX)"
 
 # --- checking --------------------------------------------------------------------------------------
-.PHONY: check check-san check-mutants fuzz fuzz-programs lint demo bench deps clean help
+.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench deps clean help
 RUN_ENV := CFG=$(CFG) BUILD=$(BUILD) BRECCIA=$(BUILD)/breccia JOBS=$(JOBS)
 check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
 	@$(RUN_ENV) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
@@ -200,6 +200,11 @@ fuzz: build/fuzz/tools ## look for bytes that break the readers of files, FUZZ_T
 fuzz-programs: $(FUZZ_PROGRAMS)
 check-mutants: all $(TEST_PROGRAMS) ## plant faults in the laws; the tests must find each
 	@if [ -x tests/mutants/run ]; then $(RUN_ENV) tests/mutants/run; else echo "no tests/mutants/run"; fi
+
+build/paraview/installed: .ci/deps
+	@mkdir -p $(@D); .ci/deps paraview $@
+check-paraview: all build/paraview/installed ## opens the frames with VTK's and ParaView's own readers (installs both)
+	@$(RUN_ENV) tests/paraview/run build/paraview
 
 demo: all ## both models side by side: compression, tension, Brazilian test
 	@for case in $(sort $(wildcard cases/demo_*.yaml)); do $(BUILD)/breccia compare $$case --force && echo || exit 1; done

@@ -220,11 +220,13 @@ int brc_h5_put_group(const struct brc_h5_file *f, const char *path)
 
 /* ---- texts --------------------------------------------------------------------------------- */
 
-/* A type of fixed-length text; closed by the caller. */
+/* A type of fixed-length text without a byte at its end: VTK compares them all. Closed by the
+ * caller. */
 static hid_t text_type(const char *text)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, strlen(text) + 1);
+    H5Tset_size(type, *text ? strlen(text) : 1);
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
     return type;
 }
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io_h5.h"
 
-#include "h5.h"
-
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -127,7 +125,6 @@ static void hash_text(const struct brc_sim *sim, char text[17])
     snprintf(text, 17, "%016" PRIx64, brc_sim_hash(sim));
 }
 
-/* Texts that tell where a file comes from, under /provenance. */
 static int write_texts(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n)
 {
     char name[NAME_SIZE];
@@ -143,21 +140,26 @@ static void specimen_text(const struct brc_sim *sim, char text[17])
     snprintf(text, 17, "%016" PRIx64, brc_facets_hash(&sim->specimen->facets));
 }
 
-static int write_provenance(const struct brc_h5_file *f, const struct brc_sim *sim,
-                            const struct brc_h5_extra *extra)
+int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n)
+{
+    static const struct brc_h5_text own[] = {
+        {"program", "breccia"}, {"version", BRC_VERSION}, {"compiler", __VERSION__}};
+    BRC_TRY(brc_h5_put_group(f, "provenance"));
+    BRC_TRY(write_texts(f, own, sizeof own / sizeof own[0]));
+    return write_texts(f, texts, n);
+}
+
+static int write_identity(const struct brc_h5_file *f, const struct brc_sim *sim)
 {
     char hash[17], format[16], specimen[17];
     hash_text(sim, hash);
     specimen_text(sim, specimen);
     snprintf(format, sizeof format, "%d", BRC_H5_FORMAT);
-    const struct brc_h5_text own[] = {
-        {"program", "breccia"},      {"version", BRC_VERSION},   {"compiler", __VERSION__},
-        {"format", format},          {"model", sim->model.name}, {"state_hash", hash},
-        {"specimen_hash", specimen},
-    };
-    BRC_TRY(brc_h5_put_group(f, "provenance"));
-    BRC_TRY(write_texts(f, own, sizeof own / sizeof own[0]));
-    return write_texts(f, extra->texts, extra->n_texts);
+    const struct brc_h5_text texts[] = {{"format", format},
+                                        {"model", sim->model.name},
+                                        {"state_hash", hash},
+                                        {"specimen_hash", specimen}};
+    return write_texts(f, texts, sizeof texts / sizeof texts[0]);
 }
 
 static int write_all(const struct brc_h5_file *f, struct brc_sim *sim,
@@ -165,7 +167,8 @@ static int write_all(const struct brc_h5_file *f, struct brc_sim *sim,
 {
     struct brc_state state;
     brc_state_list(sim, &state);
-    BRC_TRY(write_provenance(f, sim, extra));
+    BRC_TRY(brc_h5_put_provenance(f, extra->texts, extra->n_texts));
+    BRC_TRY(write_identity(f, sim));
     for (int i = 0; i < state.n; i++)
         BRC_TRY(write_part(f, &state.part[i]));
     for (int i = 0; i < extra->n_parts; i++)

@@ -4,6 +4,7 @@
 #ifndef BRC_IO_H5_H
 #define BRC_IO_H5_H
 
+#include "h5.h"
 #include "state.h"
 
 /* 2: sealed, see seal.h; with a hash of the specimen */
@@ -27,6 +28,8 @@ struct brc_h5_extra {
  * are packed for it. */
 int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra);
+/* Texts of /provenance, after the program's name, version and compiler. */
+int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n);
 /* Replaces the state of a simulation that was created from the same case. A file that is not as it
  * was saved is refused before HDF5 sees it; one of another model, another specimen or other fields
  * is an error, too. */

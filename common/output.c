@@ -97,6 +97,19 @@ static void json_results(FILE *out, const struct brc_summary *s)
     fputs(s->n_results ? "\n  }\n" : "}\n", out);
 }
 
+/* How many frames there are, and the size of the last one. */
+static void json_frames(FILE *out, const struct brc_summary *s)
+{
+    fprintf(out, "  \"n_frames\": %zu,\n", s->n_frames);
+    if (s->n_frames == 0)
+        return;
+    fputs("  \"last_frame\": {", out);
+    for (int k = 0; k < BRC_N_FRAME_KINDS; k++)
+        fprintf(out, "%s\n    \"%s\": {\"n_points\": %zu, \"n_cells\": %zu}", k ? "," : "",
+                s->frame[k].name, s->frame[k].n_points, s->frame[k].n_cells);
+    fputs("\n  },\n", out);
+}
+
 int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s)
 {
     struct draft d;
@@ -115,6 +128,8 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
             s->n_contacts_listed);
     json_number_entry(out, "n_contacts_mean", s->n_contacts_mean);
     fprintf(out, "  \"n_points\": %zu,\n  \"steps\": %" PRId64 ",\n", s->n_points, s->steps);
+    fprintf(out, "  \"n_fragments\": %zu,\n", s->n_fragments);
+    json_frames(out, s);
     json_number_entry(out, "dt", s->dt);
     json_number_entry(out, "cpu_s", s->cpu_s);
     json_number_entry(out, "wall_s", s->wall_s);

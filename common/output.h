@@ -14,7 +14,13 @@
          "pictures: only cracks that have opened or slipped by this many times their mean") \
     CHOICE(view, "auto|side|top", "auto",                                                   \
            "pictures: from the side, or along z; auto: by the test")                        \
-    INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")
+    INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")                          \
+    INT(frames, "0", "[0, 99999]",                                                          \
+        "frames for ParaView: this many over test.strain_max, beside the first; 0: none")   \
+    REAL(frame_strain, "1", "0", "[0, 10)",                                                 \
+         "frames for ParaView: one every so much platen strain; 0: by frames")              \
+    INT(frame_steps, "0", "[0, 2000000000]",                                                \
+        "frames for ParaView: one every so many steps; 0: by strain")
 
 enum brc_view { BRC_VIEW_AUTO, BRC_VIEW_SIDE, BRC_VIEW_TOP };
 
@@ -22,6 +28,13 @@ struct brc_output_params {
     BRC_PARAM_MEMBERS(BRC_OUTPUT_PARAMS)
 };
 extern const struct brc_param_list brc_output_param_list;
+
+/* The meshes of a frame for ParaView, and how large one is. */
+enum brc_frame_kind { BRC_FRAME_GRAINS, BRC_FRAME_BONDS, BRC_FRAME_CONTACTS, BRC_N_FRAME_KINDS };
+struct brc_frame_count {
+    const char *name; /* static */
+    size_t n_points, n_cells;
+};
 
 /* A measured value; name and unit are static texts. */
 struct brc_summary_value {
@@ -43,7 +56,10 @@ struct brc_summary {
     size_t n_contacts;        /* rows that carry a spring now, platens included */
     size_t n_contacts_listed; /* rows, those that only watch included */
     size_t n_points;          /* points of those rows, broken ones included */
-    double n_contacts_mean;   /* rows that carry a spring, mean over the steps */
+    size_t n_fragments;       /* sets of grains that intact bonds connect */
+    size_t n_frames;          /* for ParaView */
+    struct brc_frame_count frame[BRC_N_FRAME_KINDS]; /* the last one */
+    double n_contacts_mean; /* rows that carry a spring, mean over the steps */
     int64_t steps;
     double dt;
     double cpu_s, wall_s;       /* of the step loop, all parts of a resumed run together */

@@ -2,7 +2,8 @@
 #include "run.h"
 
 #include "blowup.h"
-#include "io_h5.h"
+#include "fragments.h"
+#include "frames.h"
 #include "plot.h"
 
 #include <errno.h>
@@ -40,7 +41,8 @@ struct run {
     const struct brc_run_order *order;
     struct brc_sim sim;
     struct counts counts;
-    char *parameters; /* as text, for the state file */
+    struct brc_frames frames;
+    char *parameters, seed[16]; /* as texts, for the files */
     FILE *log;
     size_t n_active; /* contacts with a spring at the last count */
     double cpu_before, wall_before;
@@ -84,9 +86,10 @@ bool brc_run_is_stopped(void)
 
 /* ---- folder -------------------------------------------------------------------------------- */
 
-static const char *const result_files[] = {"summary.json", "state.h5",   "curve.csv",
-                                           "events.csv",   "broken.csv", "curves.png",
-                                           "cracks.png",   "cracks.plot"};
+static const char *const result_files[] = {
+    "summary.json", "state.h5",    "curve.csv",
+    "events.csv",   "broken.csv",  "curves.png",
+    "cracks.png",   "cracks.plot", "frames/grains.hdf.series"};
 enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
 static int in_folder(struct brc_context *ctx, const char *dir, const char *name,
@@ -188,6 +191,7 @@ static int replace_old(struct run *r)
         if (unlink(path) != 0 && errno != ENOENT)
             BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot remove %s: %s", path, strerror(errno));
     }
+    BRC_TRY(brc_frames_remove(r->ctx, r->order->dir));
     if (ftruncate(fileno(r->log), 0) != 0)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty the log in %s: %s", r->order->dir,
                  strerror(errno));
@@ -225,29 +229,41 @@ static void take_times(struct run *r)
     r->wall_before = wall;
 }
 
-static struct brc_state_part counts_part(struct run *r)
+/* What files tell of their origin, and what a state holds beside the simulation. */
+enum { N_TEXTS = 4, N_PARTS = 2 };
+struct extra {
+    struct brc_h5_text texts[N_TEXTS];
+    struct brc_state_part parts[N_PARTS];
+    struct brc_h5_extra h5; /* points to those */
+};
+
+static void make_extra(struct run *r, struct extra *e)
 {
-    return (struct brc_state_part){.path = "run",
+    const struct brc_job *job = r->order->job;
+    *e = (struct extra){.texts = {{"case", brc_case_text(&job->file)},
+                                  {"case_name", job->name},
+                                  {"parameters", r->parameters},
+                                  {"seed", r->seed}},
+                        .parts = {{.path = "run",
                                    .set = BRC_FIELDSET(count_fields, struct counts),
                                    .base = &r->counts,
                                    .n = 1,
-                                   .is_fixed = true};
+                                   .is_fixed = true},
+                                  {.path = "frames",
+                                   .set = r->frames.table.set,
+                                   .table = &r->frames.table,
+                                   .n = r->frames.table.n}}};
+    e->h5 = (struct brc_h5_extra){e->texts, N_TEXTS, e->parts, N_PARTS};
 }
 
 static int save(struct run *r)
 {
-    char path[PATH_SIZE], seed[32];
-    const struct brc_job *job = r->order->job;
+    char path[PATH_SIZE];
+    struct extra extra;
     take_times(r);
-    snprintf(seed, sizeof seed, "%d", job->specimen.seed);
-    const struct brc_h5_text texts[] = {{"case", brc_case_text(&job->file)},
-                                        {"case_name", job->name},
-                                        {"parameters", r->parameters},
-                                        {"seed", seed}};
-    struct brc_state_part part = counts_part(r);
-    const struct brc_h5_extra extra = {texts, sizeof texts / sizeof texts[0], &part, 1};
+    make_extra(r, &extra);
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
-    BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra));
+    BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
     r->saved_at = brc_progress_clock();
     return 0;
 }
@@ -270,15 +286,22 @@ static int check_model(struct run *r, const char *path)
 static int load(struct run *r)
 {
     char path[PATH_SIZE], *saved;
-    struct brc_state_part part = counts_part(r);
-    const struct brc_h5_extra extra = {NULL, 0, &part, 1};
+    struct extra extra;
+    make_extra(r, &extra);
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(check_model(r, path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
     int code = brc_job_same(r->ctx, saved, r->parameters);
     free(saved);
     BRC_TRY(code);
-    return brc_h5_load(r->ctx, path, &r->sim, &extra);
+    return brc_h5_load(r->ctx, path, &r->sim, &extra.h5);
+}
+
+static int write_frame(struct run *r)
+{
+    struct extra extra;
+    make_extra(r, &extra);
+    return brc_frames_write(r->ctx, &r->frames, r->order->dir, &r->sim, &extra.h5);
 }
 
 /* ---- step loop ----------------------------------------------------------------------------- */
@@ -325,14 +348,25 @@ static bool save_is_due(const struct run *r)
     return p->checkpoint > 0 && brc_progress_clock() - r->saved_at >= p->checkpoint;
 }
 
+/* The last frame is no part of the state: a run that goes on replaces it. */
+static int end_loop(struct run *r)
+{
+    BRC_TRY(save(r));
+    bool has_last = brc_frames_are_on(&r->order->job->output) && strcmp(r->ended_by, "signal") != 0;
+    return has_last ? write_frame(r) : 0;
+}
+
 static int step_loop(struct run *r)
 {
     struct brc_sim *sim = &r->sim;
+    const struct brc_output_params *output = &r->order->job->output;
     r->cpu_before = cpu_now();
     r->wall_before = r->saved_at = brc_progress_clock();
     while (!(r->ended_by = ended_by(sim))) {
         if (r->n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
             r->n_active = count_active(&sim->pairs) + count_active(&sim->platens);
+        if (brc_frames_is_due(&r->frames, output, sim))
+            BRC_TRY(write_frame(r));
         BRC_TRY(brc_sim_step(sim));
         BRC_TRY(brc_blowup_energy(sim));
         r->counts.contact_steps += (double)r->n_active;
@@ -341,16 +375,17 @@ static int step_loop(struct run *r)
         if (save_is_due(r))
             BRC_TRY(save(r));
     }
-    return save(r);
+    return end_loop(r);
 }
 
 /* ---- output -------------------------------------------------------------------------------- */
 
-static void measure(const struct run *r, struct brc_summary *s)
+static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
     const struct brc_job *job = r->order->job;
     struct brc_result result[BRC_MAX_RESULTS];
+    struct brc_fragments fragments;
     double stored[3];
     sim->model.energy(sim, sim->state, stored);
     *s = (struct brc_summary){
@@ -359,6 +394,7 @@ static void measure(const struct run *r, struct brc_summary *s)
         .n_facets = sim->specimen->facets.n_facets,
         .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
         .n_contacts_listed = sim->pairs.n + sim->platens.n,
+        .n_frames = r->frames.table.n,
         .steps = sim->step,
         .dt = sim->dt,
         .cpu_s = r->counts.cpu_s,
@@ -381,6 +417,12 @@ static void measure(const struct run *r, struct brc_summary *s)
     s->n_results = brc_rig_results(sim, result);
     for (int i = 0; i < s->n_results; i++)
         s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit};
+    memcpy(s->frame, r->frames.last, sizeof s->frame);
+    int code = brc_fragments_find(r->ctx, sim->bodies.n_grains, sim->specimen->facets.volume,
+                                  &sim->pairs, &fragments);
+    s->n_fragments = fragments.n;
+    brc_fragments_free(&fragments);
+    return code;
 }
 
 static int write_tables(struct run *r)
@@ -409,7 +451,7 @@ static int draw(struct run *r)
 static int write_results(struct run *r, struct brc_summary *out)
 {
     char path[PATH_SIZE];
-    measure(r, out);
+    BRC_TRY(measure(r, out));
     BRC_TRY(write_tables(r));
     BRC_TRY(in_folder(r->ctx, r->order->dir, "summary.json", path));
     BRC_TRY(brc_output_summary(r->ctx, path, out));
@@ -473,6 +515,8 @@ static void keep_traces(struct run *r)
 int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out)
 {
     struct run r = {.ctx = ctx, .order = order};
+    brc_frames_init(&r.frames);
+    snprintf(r.seed, sizeof r.seed, "%d", order->job->specimen.seed);
     int code = prepare(&r);
     if (code == 0) {
         report(&r, false);
@@ -488,6 +532,7 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
                              "interrupted at step %" PRId64 "; the state is saved in %s",
                              r.sim.step, order->dir);
     brc_sim_free(&r.sim);
+    brc_frames_free(&r.frames);
     free(r.parameters);
     if (r.log)
         fclose(r.log);

@@ -25,7 +25,7 @@ title: A small box
 specimen: {shape: box, size: [3 cm, 3 cm, 4 cm], grains: grid, cells: [3, 3, 4], jitter: 0.6, seed: 3}
 test: {kind: compression, loading: fixed, rate: 5e-5 1/s, strain_max: 0.05, stop_drop: 0}
 run: {checkpoint_steps: 20}
-output: {plots: off}
+output: {plots: off, frames: 8}
 END
 
 now_ms() {

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Meshes as VTKHDF files, version 1.0, which VTK from 9.1 and ParaView from 5.10 on read as they
+ * are. */
+#ifndef BRC_VTK_H
+#define BRC_VTK_H
+
+#include "io_h5.h"
+#include "mesh.h"
+
+/* Writes a mesh with the values of its cells; whole: a table of one row with values of the whole;
+ * texts go to /provenance, which VTK passes over. The file appears complete or not at all. */
+int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mesh *m,
+                 const struct brc_table *whole, const struct brc_h5_text *texts, int n_texts);
+/* The index of a series: names and times as ParaView's .series files have them. */
+int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix,
+                   const double *time, size_t n);
+
+#endif
