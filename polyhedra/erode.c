@@ -148,7 +148,8 @@ int poly_shape(struct brc_sim *sim, void *state)
     BRC_TRY(code);
     st->world = brc_alloc(sim->ctx, st->shapes.vertex_first[st->shapes.n], sizeof *st->world);
     st->turn = brc_alloc(sim->ctx, sim->bodies.n, sizeof *st->turn);
-    if (st->world == NULL || st->turn == NULL)
+    st->plane = brc_alloc(sim->ctx, st->shapes.face_first[st->shapes.n], sizeof *st->plane);
+    if (st->world == NULL || st->turn == NULL || st->plane == NULL)
         return BRC_ERR_MEMORY;
     for (size_t i = sim->bodies.n_grains; i < sim->bodies.n; i++)
         sim->bodies.q[i][0] = 1;

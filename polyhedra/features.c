@@ -57,15 +57,18 @@ int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct pol
     return 0;
 }
 
+static const int32_t none_near[POLY_NEAR] = {POLY_NONE_NEAR, POLY_NONE_NEAR, POLY_NONE_NEAR,
+                                             POLY_NONE_NEAR};
+
 /* Vertex v of the own core and a face or place of the other. */
 static int add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, int32_t v,
-                      int32_t place, int32_t near, double gap)
+                      int32_t place, const int32_t near[POLY_NEAR], double gap)
 {
     struct poly_feature f = {.free = gap,
                              .i = of_b ? place : v,
                              .j = of_b ? v : place,
-                             .near = near,
                              .kind = of_b ? POLY_VERTEX_B : POLY_VERTEX_A};
+    memcpy(f.near, near, sizeof f.near);
     return poly_list_add(ctx, l, &f);
 }
 
@@ -137,23 +140,29 @@ static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct
             continue;
         double path = path_to_face(s->other, f, q, rule, p->rest);
         if (path < skin)
-            BRC_TRY(add_vertex(ctx, l, of_b, v, f, POLY_NONE_NEAR, path));
+            BRC_TRY(add_vertex(ctx, l, of_b, v, f, none_near, path));
     }
     return 0;
 }
 
 /* Vertices of the other core (q: of the own one in its frame) that may come within the range where
  * they lower the weight. */
-static int32_t near_vertex(const struct poly_core *other, const double q[3], double range)
+static void near_vertices(int32_t near[POLY_NEAR], const struct poly_core *other, const double q[3],
+                          double range)
 {
-    int32_t near = POLY_NONE_NEAR;
+    int32_t n = 0;
+    memcpy(near, none_near, sizeof none_near);
     for (int32_t u = 0; u < other->n_vertices; u++) {
         double r[3];
         brc_sub(r, q, other->vertex[u]);
-        if (brc_norm2(r) < range * range)
-            near = near == POLY_NONE_NEAR ? u : POLY_MANY_NEAR;
+        if (brc_norm2(r) >= range * range)
+            continue;
+        if (n < POLY_NEAR)
+            near[n] = u;
+        n++;
     }
-    return near;
+    if (n > POLY_NEAR)
+        near[0] = POLY_MANY_NEAR;
 }
 
 static int list_vertices(struct brc_context *ctx, struct poly_list *l, const struct side *s,
@@ -172,9 +181,11 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
         struct poly_foot foot;
         poly_to_body(q, s->r, s->x, s->v[v]);
         poly_foot_walk(&foot, s->other, q, poly_place(poly_highest(s->other, q, &h), POLY_ON_FACE));
-        if (foot.s < p->rest + skin)
-            BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near_vertex(s->other, q, range),
-                               foot.s - p->rest));
+        if (foot.s >= p->rest + skin)
+            continue;
+        int32_t near[POLY_NEAR];
+        near_vertices(near, s->other, q, range);
+        BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near, foot.s - p->rest));
     }
     return 0;
 }
@@ -245,7 +256,6 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
                 .free = path_to_edges(p, i, j, rule, radius, skin),
                 .i = i,
                 .j = j,
-                .near = POLY_NONE_NEAR,
                 .kind = POLY_EDGES,
             };
             if (f.free < skin)
@@ -303,7 +313,7 @@ double poly_free_path(const struct poly_pair *p, const struct poly_feature *f, e
 
 /* --- feet ------------------------------------------------------------------------------------- */
 
-static double margin_of(const struct poly_core *c, const struct poly_foot *foot, const double q[3])
+double poly_foot_margin(const struct poly_core *c, const struct poly_foot *foot, const double q[3])
 {
     int32_t index = foot->place >> 2;
     double margin = foot->s, along[3], d[3];
@@ -334,5 +344,5 @@ double poly_find_foot(struct poly_foot *foot, const struct poly_core *c, const d
                       int32_t place)
 {
     poly_foot_walk(foot, c, q, place);
-    return margin_of(c, foot, q);
+    return poly_foot_margin(c, foot, q);
 }

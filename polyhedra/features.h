@@ -8,15 +8,17 @@
 enum poly_rule { POLY_CLOSED, POLY_STRICT, POLY_MERGED };
 enum poly_kind { POLY_VERTEX_A, POLY_VERTEX_B, POLY_EDGES };
 
+enum { POLY_NEAR = 4, POLY_NONE_NEAR = -1, POLY_MANY_NEAR = -2 };
+
 /* A feature pair. POLY_VERTEX_A: vertex i of a and face j of b (merged: the place of its foot on
  * b); POLY_VERTEX_B: face (place) i of a and vertex j of b; POLY_EDGES: edges i and j. */
 struct poly_feature {
     double free; /* m, relative path of the bodies before the pair can touch */
     int32_t i, j;
-    int32_t near; /* the only vertex of the other core that may lower a merged vertex's weight */
+    int32_t near[POLY_NEAR]; /* vertices of the other core that may lower a merged vertex's weight,
+                                then POLY_NONE_NEAR; the first is POLY_MANY_NEAR: more than fit */
     uint8_t kind;
 };
-enum { POLY_NONE_NEAR = -1, POLY_MANY_NEAR = -2 };
 
 /* The place that a feature pair remembers. */
 static inline int32_t *poly_remembered(struct poly_feature *f)
@@ -117,16 +119,20 @@ static inline bool poly_foot_on_face(struct poly_foot *foot, const struct poly_c
 
 /* Gradient parts of a vertex spring: its weight falls towards the vertices u of the other core. */
 static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], const double (*u)[3],
-                                     int32_t n, int32_t near, double sign,
+                                     int32_t n, const int32_t near[POLY_NEAR], double sign,
                                      const struct poly_pair *p)
 {
-    if (near == POLY_NONE_NEAR)
+    if (near[0] == POLY_NONE_NEAR)
         return;
-    if (near >= 0) {
-        u += near;
-        n = 1;
+    double grad[3], arm[3], found[POLY_NEAR][3];
+    if (near[0] != POLY_MANY_NEAR) {
+        n = 0;
+        while (n < POLY_NEAR && near[n] != POLY_NONE_NEAR) {
+            brc_copy(found[n], u[near[n]]);
+            n++;
+        }
+        u = (const double(*)[3])found;
     }
-    double grad[3], arm[3];
     t->weight = poly_vertex_weight(v, u, n, p->rest * p->rest, p->ell * p->ell, grad);
     t->graded = t->weight < 1;
     if (!t->graded)
@@ -136,6 +142,8 @@ static inline void poly_weigh_vertex(struct poly_touch *t, const double v[3], co
     brc_cross(t->c, arm, t->g);
 }
 
+/* How far q may move before its foot leaves its place, 0 or less inside the core. */
+double poly_foot_margin(const struct poly_core *c, const struct poly_foot *foot, const double q[3]);
 /* Finds the foot of q, from a remembered place on; returns how far q may move before the foot
  * leaves its place, 0 inside the core. */
 double poly_find_foot(struct poly_foot *foot, const struct poly_core *c, const double q[3],
@@ -160,9 +168,12 @@ static inline void poly_foot_known(struct poly_foot *foot, const struct poly_cor
     poly_foot_point(foot, q, x, foot->n, place);
 }
 
-/* Vertex v (in space) of one body against the core c of the other by `closed` and `strict`. */
+/* Vertex v (in space) of one body against the core c of the other by `closed` and `strict`. *margin
+ * is how far the vertex may move before its foot leaves the face: > 0 on entry says that it is
+ * inside for sure. */
 static inline bool poly_touch_face(struct poly_touch *t, const struct poly_pair *p, const bool of_b,
-                                   int32_t vertex, int32_t face, const enum poly_rule rule)
+                                   int32_t vertex, int32_t face, double *margin,
+                                   const enum poly_rule rule)
 {
     const struct poly_core *c = of_b ? &p->a : &p->b;
     const double(*rm)[3] = of_b ? p->ra : p->rb;
@@ -171,8 +182,16 @@ static inline bool poly_touch_face(struct poly_touch *t, const struct poly_pair 
     struct poly_foot foot;
     poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
     t->delta = 0;
-    if (!poly_foot_on_face(&foot, c, face, q, rule, p->rest))
-        return false;
+    if (*margin > 0) {
+        poly_foot_face(&foot, c, face, poly_height(&c->face[face], q));
+        if (foot.s >= p->rest)
+            return false;
+    } else {
+        if (!poly_foot_on_face(&foot, c, face, q, rule, p->rest))
+            return false;
+        if (rule == POLY_STRICT && poly_height(&c->face[face], q) > 0)
+            *margin = poly_foot_margin(c, &foot, q);
+    }
     poly_vertex_touch(t, &foot, rm, v, of_b ? 1 : -1, p->rest);
     return true;
 }
@@ -181,7 +200,8 @@ static inline bool poly_touch_face(struct poly_touch *t, const struct poly_pair 
  * core that may lower the weight. *margin is how far the vertex may move before the place changes:
  * > 0 on entry says that the place is sure, otherwise it is found. */
 static inline bool poly_touch_core(struct poly_touch *t, const struct poly_pair *p, const bool of_b,
-                                   int32_t vertex, int32_t *place, int32_t near, double *margin)
+                                   int32_t vertex, int32_t *place, const int32_t near[POLY_NEAR],
+                                   double *margin)
 {
     const struct poly_core *c = of_b ? &p->a : &p->b;
     const double(*rm)[3] = of_b ? p->ra : p->rb;
@@ -273,7 +293,7 @@ static inline bool poly_touch_again(struct poly_touch *t, const struct poly_pair
     bool of_b = f->kind == POLY_VERTEX_B;
     int32_t vertex = of_b ? f->j : f->i;
     *active = rule == POLY_MERGED ? poly_touch_core(t, p, of_b, vertex, place, f->near, margin)
-                                  : poly_touch_face(t, p, of_b, vertex, *place, rule);
+                                  : poly_touch_face(t, p, of_b, vertex, *place, margin, rule);
     return *active;
 }
 

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over grain pairs. Its body is written once and instantiated with constant options, so
- * that an option that is off costs nothing. */
+/* The loop over grain pairs, by blocks of rows (block.h): rows are looked at one by one, what must
+ * be computed goes into work lists, and kernels.c does it four at a time. */
 #include "step.h"
+
+/* rows whose points are fetched ahead */
+enum { FETCH_AHEAD = 4 };
 
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
@@ -14,6 +17,10 @@ void poly_world(const struct brc_sim *sim, const struct poly_state *st)
         for (size_t v = s->vertex_first[i]; v < s->vertex_first[i + 1]; v++)
             for (int k = 0; k < 3; k++)
                 st->world[v][k] = b->x[i][k] + brc_dot(m[k], s->vertex[v]);
+        for (size_t f = s->face_first[i]; f < s->face_first[i + 1]; f++) {
+            poly_to_space(st->plane[f], m, s->face[f].n);
+            st->plane[f][3] = brc_dot(st->plane[f], b->x[i]) + s->face[f].d;
+        }
     }
 }
 
@@ -81,164 +88,404 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
     }
 }
 
-/* Bond force of an intact row. */
-static inline void bond_row(struct brc_sim *sim, const struct poly_state *st, size_t row,
-                            const struct poly_motion *m, struct poly_wrench *w, double k[3])
+/* --- points ------------------------------------------------------------------------------------
+ */
+
+/* Row i of the block as the literal functions want it. */
+static const struct poly_pair *pair_of(struct poly_block *block, int32_t i)
 {
-    const struct poly_params *params = poly_params_of(sim);
+    if (block->pair_row != block->row[i])
+        poly_pair_of(&block->pair, block->sim, block->st, block->a[i], block->b[i]);
+    block->pair_row = block->row[i];
+    return &block->pair;
+}
+
+static enum poly_rule rule_of(const struct poly_block *block)
+{
+    return (enum poly_rule)poly_params_of(block->sim)->features;
+}
+
+static void put_touch(struct poly_block *block, int32_t slot, const struct poly_touch *t)
+{
+    struct poly_touches *to = &block->touch[slot / BRC_LANES];
+    int lane = slot % BRC_LANES;
+    to->delta[lane] = t->delta;
+    to->weight[lane] = t->weight;
+    for (int k = 0; k < 3; k++) {
+        to->n[k][lane] = t->n[k];
+        to->x[k][lane] = t->x[k];
+        to->g[k][lane] = t->g[k];
+        to->c[k][lane] = t->c[k];
+    }
+}
+
+static const struct poly_touch no_touch = {.weight = 0};
+
+/* A point by the literal functions. True when it is a vertex whose foot on a face or place is sure
+ * now: then the work list has it. */
+static bool touch_literally(struct poly_block *block, int32_t i, size_t p, int32_t slot)
+{
+    struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    struct poly_points *points = c->point_columns;
+    struct poly_feature f = poly_point(points, p);
+    struct poly_touch t;
+    double room = rows->room[block->row[i]], margin = 0;
+    int32_t *place = f.kind == POLY_VERTEX_B ? &points->i[p] : &points->j[p];
+    bool touches = poly_touch_again(&t, pair_of(block, i), &f, place, &points->active[p], &margin,
+                                    rule_of(block));
+    put_touch(block, slot, touches ? &t : &no_touch);
+    if (f.kind == POLY_EDGES)
+        return false;
+    points->hold[p] = room - margin;
+    return margin > 0;
+}
+
+static void list_edges(struct poly_block *block, int32_t i, size_t p, int32_t slot)
+{
+    const struct poly_shapes *s = &block->st->shapes;
+    const struct poly_points *points = block->sim->pairs.point_columns;
+    int32_t a = block->a[i], b = block->b[i];
+    const int32_t *ea = s->end[s->edge_first[a] + (size_t)points->i[p]];
+    const int32_t *eb = s->end[s->edge_first[b] + (size_t)points->j[p]];
+    int32_t va = (int32_t)s->vertex_first[a], vb = (int32_t)s->vertex_first[b];
+    int32_t side = points->active[p];
+    block->edge[block->n_edges++] =
+        (struct poly_edge_item){.slot = slot,
+                                .end = {va + ea[0], va + ea[1], vb + eb[0], vb + eb[1]},
+                                .side = side == 3 ? 0 : side};
+}
+
+/* The work list for a vertex with these vertices near. */
+static int vertex_list(const int32_t near[POLY_NEAR], bool flat)
+{
+    if (near[0] == POLY_MANY_NEAR)
+        return flat ? POLY_FLAT_ALL : POLY_SHARP_ALL;
+    if (near[1] == POLY_NONE_NEAR)
+        return flat ? POLY_FLAT : POLY_SHARP;
+    return flat ? POLY_FLAT_NEAR : POLY_SHARP_NEAR;
+}
+
+static void list_vertex(struct poly_block *block, int32_t i, size_t p, int32_t slot, bool merged)
+{
+    const struct poly_shapes *s = &block->st->shapes;
+    const struct poly_points *points = block->sim->pairs.point_columns;
+    bool of_b = points->kind[p] == POLY_VERTEX_B;
+    int32_t own = of_b ? block->b[i] : block->a[i], other = of_b ? block->a[i] : block->b[i];
+    int32_t vertex = of_b ? points->j[p] : points->i[p];
+    int32_t place = of_b ? points->i[p] : points->j[p], index = merged ? place >> 2 : place;
+    int32_t first = (int32_t)s->vertex_first[other];
+    bool flat = !merged || (place & 3) == POLY_ON_FACE;
+    int list = vertex_list(points->near[p], flat);
+    struct poly_vertex_item *item = &block->vertex[list][block->n_vertices[list]++];
+    item->slot = slot;
+    item->vertex = (int32_t)s->vertex_first[own] + vertex;
+    item->sign = of_b ? 1 : -1;
+    item->first = first;
+    item->n = (int32_t)s->vertex_first[other + 1] - first;
+    memcpy(item->near, points->near[p], sizeof item->near);
+    if (flat) {
+        item->place[0] = (int32_t)s->face_first[other] + index;
+        return;
+    }
+    const int32_t *end = s->end[s->edge_first[other] + (size_t)index];
+    bool on_edge = (place & 3) == POLY_ON_EDGE;
+    item->place[0] = first + (on_edge ? end[0] : index);
+    item->place[1] = first + (on_edge ? end[1] : index);
+}
+
+/* A point into the work list that knows it. What is computed where depends on the pose alone, not
+ * on what is remembered. */
+static void list_point(struct poly_block *block, int32_t i, size_t p, int32_t slot, double room)
+{
+    const struct poly_points *points = block->sim->pairs.point_columns;
+    enum poly_rule rule = rule_of(block);
+    if (rule == POLY_CLOSED)
+        touch_literally(block, i, p, slot);
+    else if (points->kind[p] == POLY_EDGES)
+        list_edges(block, i, p, slot);
+    else if (room > points->hold[p] || touch_literally(block, i, p, slot))
+        list_vertex(block, i, p, slot, rule == POLY_MERGED);
+}
+
+static struct poly_spring_law spring_law(const struct brc_sim *sim)
+{
+    const struct poly_params *p = poly_params_of(sim);
+    return (struct poly_spring_law){.kn = poly_pair_stiffness(p->kn, p->kn),
+                                    .kt = poly_pair_stiffness(p->kt, p->kt),
+                                    .mu = p->mu};
+}
+
+/* A point that does not touch: its spring is released, and it goes to sleep. */
+static void come_apart(struct poly_block *block, int32_t i, size_t p)
+{
+    struct brc_sim *sim = block->sim;
     struct brc_contacts *c = &sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    struct poly_points *points = c->point_columns;
+    struct poly_feature f = poly_point(points, p);
+    struct poly_touch t;
+    enum poly_rule rule = rule_of(block);
+    size_t row = (size_t)block->row[i];
+    double room = rows->room[row], margin = room - points->hold[p], path = 0;
+    uint8_t active = points->active[p];
+    if (!poly_touch_again(&t, pair_of(block, i), &f, poly_remembered(&f), &active, &margin, rule))
+        path = rule == POLY_MERGED && f.kind != POLY_EDGES
+                   ? -t.delta
+                   : poly_free_path(pair_of(block, i), &f, rule, room);
+    struct poly_spring_law law = spring_law(sim);
+    if (points->weight[p] > 0 && law.mu > 0 && law.kt > 0) {
+        struct poly_motion m;
+        poly_start_motion(&m, sim, block->a[i], block->b[i]);
+        poly_release(sim->run.ledger ? &sim->ledger : NULL, &law, &m, points->xi[p],
+                     points->weight[p]);
+    }
+    poly_sleep_point(c, row, p, room - poly_most(path, 0));
+}
+
+/* What has become of the points of a segment: from the last one on, so that those that are still to
+ * come do not move. */
+static void settle_points(struct poly_block *block, const struct poly_segment *segment)
+{
+    struct poly_points *points = block->sim->pairs.point_columns;
+    for (int32_t slot = segment->slot + segment->n - 1; slot >= segment->slot; slot--) {
+        size_t p = (size_t)block->point[slot];
+        double weight = block->touch[slot / BRC_LANES].weight[slot % BRC_LANES];
+        if (!(weight > 0)) {
+            come_apart(block, segment->row, p);
+            continue;
+        }
+        if (points->active[p] == 0)
+            points->active[p] = 1;
+        points->weight[p] = weight;
+    }
+}
+
+/* Computes all that is listed. */
+static void work_off(struct poly_block *block)
+{
+    block->st->kernels.touch(block);
+    block->st->kernels.points(block);
+    for (int32_t i = 0; i < block->n_segments; i++)
+        settle_points(block, &block->segment[i]);
+    block->n_segments = block->n_slots = 0;
+}
+
+/* Ends the last segment at a whole group: slots that are left over stay empty. */
+static void end_segment(struct poly_block *block)
+{
+    struct poly_segment *segment = &block->segment[block->n_segments];
+    segment->n = block->n_slots - segment->slot;
+    for (; block->n_slots % BRC_LANES != 0; block->n_slots++) {
+        put_touch(block, block->n_slots, &no_touch);
+        block->point[block->n_slots] = block->point[segment->slot];
+    }
+    block->n_segments += segment->n > 0;
+}
+
+static void begin_segment(struct poly_block *block, int32_t i)
+{
+    block->segment[block->n_segments] = (struct poly_segment){.row = i, .slot = block->n_slots};
+}
+
+/* The points of a row lie anywhere in their columns: asks for them ahead of their use. */
+static void fetch_points(const struct poly_block *block, int32_t i)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    const struct poly_points *points = c->point_columns;
+    if (i >= block->n_rows)
+        return;
+    size_t row = (size_t)block->row[i], first = (size_t)c->p0[row];
+    size_t end = first + (size_t)rows->awake[row];
+    __builtin_prefetch(&points->kind[first]);
+    __builtin_prefetch(&points->active[first]);
+    for (size_t p = first; p < end; p += 4)
+        __builtin_prefetch(&points->near[p]);
+    for (size_t p = first; p < end; p += 8) {
+        __builtin_prefetch(&points->i[p]);
+        __builtin_prefetch(&points->j[p]);
+        __builtin_prefetch(&points->sleep[p]);
+        __builtin_prefetch(&points->hold[p]);
+        __builtin_prefetch(&points->weight[p]);
+    }
+    for (size_t p = first; p < end; p += 2) {
+        __builtin_prefetch(&points->n[p]);
+        __builtin_prefetch(&points->xi[p]);
+    }
+}
+
+/* Lists the points of row i of the block that may touch. A row is never split, unless it fills all
+ * slots by itself: its sums do not depend on the rows around it. */
+static void list_points(struct poly_block *block, int32_t i)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    size_t row = (size_t)block->row[i], p = (size_t)c->p0[row], n;
+    poly_wake_points(&block->sim->pairs, row, rule_of(block) == POLY_MERGED);
+    n = (size_t)rows->awake[row];
+    if (n == 0)
+        return;
+    if ((size_t)block->n_slots + n > POLY_SLOTS)
+        work_off(block);
+    /* parts from the last one on: those that are still to come do not move (settle_points) */
+    while (n > 0) {
+        size_t part = n % POLY_SLOTS > 0 ? n % POLY_SLOTS : POLY_SLOTS;
+        n -= part;
+        begin_segment(block, i);
+        for (size_t q = p + n; q < p + n + part; q++) {
+            block->point[block->n_slots] = (int32_t)q;
+            list_point(block, i, q, block->n_slots++, rows->room[row]);
+        }
+        end_segment(block);
+        if (n > 0)
+            work_off(block);
+    }
+}
+
+/* --- rows --------------------------------------------------------------------------------------
+ */
+
+/* Takes rows that have something to do into the block; returns the next row. */
+static size_t take_rows(struct poly_block *block, size_t row)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    int32_t n = 0;
+    for (; row < c->n && n < POLY_ROWS; row++) {
+        bool listed = c->np[row] > 0;
+        if (!listed && poly_is_idle(c, row) && !poly_is_awake(block->sim, c, row))
+            continue;
+        block->row[n] = (int32_t)row;
+        block->a[n] = c->a[row];
+        block->b[n] = c->b[row];
+        block->listed[n++] = listed;
+    }
+    block->n_rows = n;
+    for (; n % BRC_LANES != 0; n++) {
+        block->row[n] = block->row[n - 1];
+        block->a[n] = block->a[n - 1];
+        block->b[n] = block->b[n - 1];
+    }
+    return row;
+}
+
+/* The bond of a row breaks: the lanes lose it. */
+static void break_row(struct poly_block *block, int32_t i)
+{
+    struct poly_row_group *g = &block->group[i / BRC_LANES];
+    const struct poly_params *params = poly_params_of(block->sim);
+    struct brc_contacts *c = &block->sim->pairs;
+    size_t row = (size_t)block->row[i];
     struct poly_bond bond = poly_bond_of(params, c->model_columns, row);
     struct poly_bond_pose pose;
     struct poly_bond_result r;
-    poly_pose_bond(&pose, c, row, st, &sim->bodies, params->torsion);
+    struct poly_motion m;
+    poly_start_motion(&m, block->sim, block->a[i], block->b[i]);
+    poly_pose_bond(&pose, c, row, block->st, &block->sim->bodies, params->torsion);
     poly_bond_law(&r, &bond, &pose, params->torsion);
-    if (params->breakable && poly_bond_breaks(&r))
-        break_bond(sim, row, &bond, &r, m);
-    else
-        poly_push_bond(w, k, &r, &bond, m);
+    break_bond(block->sim, row, &bond, &r, &m);
+    for (int k = 0; k < 3; k++)
+        g->bond.f[k][i % BRC_LANES] = g->bond.m[k][i % BRC_LANES] = g->k[k][i % BRC_LANES] = 0;
 }
 
-static inline void law_of_pair(struct poly_spring_law *law, const struct brc_sim *sim, int32_t a,
-                               int32_t b, const bool viscous)
+/* Lists the features of row i of the block anew when its path or travel calls for it, and breaks
+ * its bond. */
+static int prepare_row(struct poly_block *block, int32_t i)
 {
-    const struct poly_params *p = poly_params_of(sim);
-    const double *mass = sim->bodies.true_mass;
-    double effective = viscous ? mass[a] * mass[b] / (mass[a] + mass[b]) : 0;
-    *law = (struct poly_spring_law){.kn = poly_pair_stiffness(p->kn, p->kn),
-                                    .kt = poly_pair_stiffness(p->kt, p->kt),
-                                    .mu = p->mu,
-                                    .gn = p->gn * effective,
-                                    .gt = p->gt * effective};
-}
-
-__attribute__((always_inline)) static inline void
-points_row(struct brc_sim *sim, const struct poly_state *st, size_t row, struct poly_sums *s,
-           const struct poly_motion *m, const enum poly_rule rule, const bool friction,
-           const bool viscous)
-{
-    struct brc_contacts *c = &sim->pairs;
-    struct poly_points *points = c->point_columns;
-    struct brc_ledger *ledger = sim->run.ledger ? &sim->ledger : NULL;
-    struct poly_spring_law law;
-    struct poly_pair pair;
-    poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
-    law_of_pair(&law, sim, c->a[row], c->b[row], viscous);
-    struct poly_rows *rows = c->model_columns;
-    double room = rows->room[row];
-    size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
-    size_t awake = first + (size_t)rows->awake[row];
-    while (awake < end && room <= points->sleep[awake])
-        awake++;
-    rows->awake[row] = (int32_t)(awake - first);
-    for (size_t p = first; p < awake; p++) {
-        struct poly_touch t;
-        if (room > points->sleep[p])
-            continue;
-        struct poly_feature f = poly_point(points, p);
-        int32_t *place = f.kind == POLY_VERTEX_B ? &points->i[p] : &points->j[p];
-        double sure = room - points->hold[p], margin = sure;
-        bool touches = poly_touch_again(&t, &pair, &f, place, &points->active[p], &margin, rule);
-        if (rule == POLY_MERGED && sure <= 0)
-            points->hold[p] = room - margin;
-        if (touches) {
-            points->sleep[p] = HUGE_VAL;
-            poly_act(ledger, s, &t, &law, m, points, p, friction, viscous);
-            if (-t.delta < s->gap)
-                s->gap = -t.delta;
-            continue;
-        }
-        double path = rule == POLY_MERGED && f.kind != POLY_EDGES
-                          ? -t.delta
-                          : poly_free_path(&pair, &f, rule, room);
-        points->sleep[p] = room - poly_most(path, 0);
-        if (points->weight[p] > 0) {
-            if (friction)
-                poly_release(ledger, &law, m, points->xi[p], points->weight[p]);
-            points->weight[p] = 0;
-        }
-    }
-}
-
-/* Counts the step's relative path against the list's allowance; a's vertices near b move with it
- * too, so its reach is taken that much larger. */
-static inline bool keeps_list(const struct brc_sim *sim, const struct poly_rows *rows, size_t row,
-                              const struct poly_motion *m)
-{
-    const double *reach = sim->bodies.reach, rest = 2 * poly_params_of(sim)->radius;
-    const struct brc_contacts *c = &sim->pairs;
-    rows->room[row] -= poly_relative_path(m, reach[c->a[row]], reach[c->b[row]] + rest);
-    return rows->room[row] > 0;
-}
-
-__attribute__((always_inline)) static inline void
-pairs_loop(struct brc_sim *sim, struct poly_state *st, const enum poly_rule rule,
-           const bool friction, const bool viscous)
-{
+    struct brc_sim *sim = block->sim;
     struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
-    for (size_t row = 0; row < c->n; row++) {
-        bool listed = c->np[row] > 0;
-        if (!listed && poly_is_awake(sim, c, row)) {
-            if (poly_list_row(sim, st, row) != 0)
-                return;
-        } else if (poly_is_idle(c, row)) {
-            continue;
-        }
-        int32_t a = c->a[row], b = c->b[row];
-        struct poly_motion m;
-        poly_start_motion(&m, sim, a, b);
-        if (listed && !keeps_list(sim, rows, row, &m) && poly_list_row(sim, st, row) != 0)
-            return;
-        struct poly_sums s = {.gap =
-                                  rows->wake[row] - sim->bodies.travel[a] - sim->bodies.travel[b]};
-        struct poly_wrench bond = {0};
-        if (c->status[row] == BRC_INTACT)
-            bond_row(sim, st, row, &m, &bond, s.k);
-        if (c->np[row] > 0)
-            points_row(sim, st, row, &s, &m, rule, friction, viscous);
-        poly_finish_row(c, row, &s, &bond, &m);
-        poly_store_k(c, row, s.k);
-        if (sim->run.ledger)
-            poly_account(&sim->ledger, rows, row, &s, &bond, &m, viscous);
-    }
+    struct poly_row_group *g = &block->group[i / BRC_LANES];
+    size_t row = (size_t)block->row[i];
+    int lane = i % BRC_LANES;
+    if (block->listed[i])
+        rows->room[row] -= g->path[lane];
+    if (block->listed[i] ? rows->room[row] <= 0 : poly_is_awake(sim, c, row))
+        BRC_TRY(poly_list_row(sim, block->st, row));
+    g->gap[lane] =
+        rows->wake[row] - sim->bodies.travel[block->a[i]] - sim->bodies.travel[block->b[i]];
+    if (g->broken[lane] > 1 && poly_params_of(sim)->breakable)
+        break_row(block, i);
+    return 0;
 }
 
-/* flatten: everything is inlined, so that the constants reach the last branch. */
-#define PAIRS_LOOP(rule, friction, viscous)                                                       \
-    __attribute__((flatten)) static void loop_##rule##_##friction##viscous(struct brc_sim *sim,   \
-                                                                           struct poly_state *st) \
-    {                                                                                             \
-        pairs_loop(sim, st, rule, friction, viscous);                                             \
-    }
-#define PAIRS_LOOPS(rule)  \
-    PAIRS_LOOP(rule, 0, 0) \
-    PAIRS_LOOP(rule, 0, 1) \
-    PAIRS_LOOP(rule, 1, 0) \
-    PAIRS_LOOP(rule, 1, 1)
-PAIRS_LOOPS(POLY_CLOSED)
-PAIRS_LOOPS(POLY_STRICT)
-PAIRS_LOOPS(POLY_MERGED)
-
-#define PAIRS_TABLE(rule)                                                      \
-    {                                                                          \
-        loop_##rule##_00, loop_##rule##_01, loop_##rule##_10, loop_##rule##_11 \
-    }
-
-poly_loop *poly_choose_pairs(const struct brc_sim *sim)
+/* Forces, moments and stiffness of row i of the block from its lanes; works into the ledger. */
+static void store_row(struct poly_block *block, int32_t i, bool viscous)
 {
-    static poly_loop *const loops[3][4] = {PAIRS_TABLE(POLY_CLOSED), PAIRS_TABLE(POLY_STRICT),
-                                           PAIRS_TABLE(POLY_MERGED)};
-    const struct poly_params *p = poly_params_of(sim);
-    int friction = p->mu > 0 && p->kt > 0;
-    int viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
-    return loops[p->features][2 * friction + viscous];
+    struct brc_sim *sim = block->sim;
+    struct brc_contacts *c = &sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    const struct poly_row_group *g = &block->group[i / BRC_LANES];
+    size_t row = (size_t)block->row[i];
+    int lane = i % BRC_LANES;
+    for (int k = 0; k < 3; k++) {
+        c->f[row][k] = g->total.f[k][lane];
+        c->ta[row][k] = g->total.m[k][lane];
+        c->tb[row][k] = g->tb[k][lane];
+    }
+    c->gap[row] = g->gap[lane];
+    poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
+    if (!sim->run.ledger)
+        return;
+    for (int k = 0; k < 3; k++) {
+        rows->normal_old[row][k] = g->normal.f[k][lane];
+        rows->normal_old[row][3 + k] = g->normal.m[k][lane];
+        rows->bond_old[row][k] = g->bond.f[k][lane];
+        rows->bond_old[row][3 + k] = g->bond.m[k][lane];
+        if (viscous) {
+            rows->viscous_old[row][k] = g->viscous.f[k][lane];
+            rows->viscous_old[row][3 + k] = g->viscous.m[k][lane];
+        }
+    }
+    sim->ledger.contact_normal += g->work_normal[lane];
+    sim->ledger.bond += g->work_bond[lane];
+    if (viscous)
+        sim->ledger.viscous += g->work_viscous[lane];
+    sim->ledger.contact_shear += g->stored[lane];
+    sim->ledger.friction += g->slid[lane] - g->stored[lane];
+}
+
+static void open_block(struct poly_block *block, struct brc_sim *sim, struct poly_state *st)
+{
+    struct poly_spring_law law = spring_law(sim);
+    double radius = poly_params_of(sim)->radius;
+    block->sim = sim;
+    block->st = st;
+    block->kn = law.kn;
+    block->kt = law.kt;
+    block->stiff = law.mu > 0 && law.kt > 0 ? poly_most(law.kn, law.kt) : law.kn;
+    block->rest = radius + radius;
+    block->ell = radius;
+    block->pair_row = -1;
+    block->n_slots = block->n_segments = block->n_edges = 0;
+    memset(block->n_vertices, 0, sizeof block->n_vertices);
 }
 
 void poly_forces(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
+    struct poly_block *block = st->block;
+    const struct poly_params *p = poly_params_of(sim);
+    bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
     poly_world(sim, st);
-    st->pairs_loop(sim, st);
+    open_block(block, sim, st);
+    for (size_t row = 0; row < sim->pairs.n;) {
+        row = take_rows(block, row);
+        for (int32_t i = 0; i < FETCH_AHEAD; i++)
+            fetch_points(block, i);
+        st->kernels.motion(block);
+        for (int32_t i = 0; i < block->n_rows; i++)
+            if (prepare_row(block, i) != 0)
+                return;
+        for (int32_t i = 0; i < block->n_rows; i++) {
+            fetch_points(block, i + FETCH_AHEAD);
+            list_points(block, i);
+        }
+        work_off(block);
+        st->kernels.finish(block);
+        for (int32_t i = 0; i < block->n_rows; i++)
+            store_row(block, i, viscous);
+    }
 }
 
 void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,

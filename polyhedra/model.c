@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly.h"
 
+#include "common/simd.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,8 +36,15 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
 
 static int create(struct brc_sim *sim, void **state)
 {
-    *state = brc_alloc(sim->ctx, 1, sizeof(struct poly_state));
-    return *state != NULL ? 0 : BRC_ERR_MEMORY;
+    struct poly_state *st = *state = brc_alloc(sim->ctx, 1, sizeof *st);
+    if (st == NULL)
+        return BRC_ERR_MEMORY;
+    size_t size = (sizeof *st->block + 63) / 64 * 64;
+    st->block = aligned_alloc(64, size);
+    if (st->block == NULL)
+        BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a block of rows", size);
+    memset(st->block, 0, size);
+    return 0;
 }
 
 static void release(void *state)
@@ -46,14 +55,25 @@ static void release(void *state)
     poly_shapes_free(&st->shapes);
     poly_list_free(&st->list);
     free(st->world);
+    free(st->plane);
+    free(st->block);
     free(st->turn);
     free(st);
 }
 
-static void select_loop(struct brc_sim *sim, void *state)
+static void select_kernels(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
-    st->pairs_loop = poly_choose_pairs(sim);
+    switch (brc_simd_of(sim->run.simd)) {
+    case BRC_SIMD_AVX512:
+        st->kernels = poly_kernels_avx512(sim);
+        break;
+    case BRC_SIMD_AVX2:
+        st->kernels = poly_kernels_avx2(sim);
+        break;
+    default:
+        st->kernels = poly_kernels_base(sim);
+    }
 }
 
 static const char *choice(const struct poly_params *p, const char *key, char *buffer, size_t size)
@@ -101,6 +121,6 @@ const struct brc_model brc_model_polyhedra = {
     .check = check,
     .create = create,
     .free = release,
-    .select = select_loop,
+    .select = select_kernels,
     .describe = describe,
 };

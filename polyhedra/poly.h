@@ -3,11 +3,14 @@
 #ifndef POLY_POLY_H
 #define POLY_POLY_H
 
+#include "block.h"
 #include "bond.h"
 #include "contact.h"
 #include "features.h"
 
 #include "common/sim.h"
+
+#include <string.h>
 
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
@@ -67,18 +70,19 @@ struct poly_rows {
 };
 
 /* Points: feature pairs near enough to touch before the row is listed anew. */
-#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                       \
-    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")              \
-    SCALAR(uint8_t, active, BRC_STATE, "1",                                                     \
-           "0 apart, 1 in contact, 2 the same with edges whose "                                \
-           "cross product points from b to a")                                                  \
-    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")           \
-    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                          \
-    SCALAR(int32_t, near, BRC_STATE, "1", "vertex that may lower the weight; -1 none, -2 many") \
-    SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room")  \
-    SCALAR(double, hold, BRC_STATE, "m", "the place is sure while the row has more room")       \
-    SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                              \
-    VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                                  \
+#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                      \
+    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")             \
+    SCALAR(uint8_t, active, BRC_STATE, "1",                                                    \
+           "0 apart, 1 in contact, 2 the same with edges whose "                               \
+           "cross product points from b to a")                                                 \
+    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")          \
+    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                         \
+    VECTOR(int32_t, near, POLY_NEAR, BRC_STATE, "1",                                           \
+           "vertices that may lower the weight; -1: no more; -2 first: too many to name")      \
+    SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room") \
+    SCALAR(double, hold, BRC_STATE, "m", "the place is sure while the row has more room")      \
+    SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                             \
+    VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                                 \
     VECTOR(double, xi, 3, BRC_STATE, "m", "tangential displacement, eq 9")
 
 struct poly_points {
@@ -87,23 +91,23 @@ struct poly_points {
 
 static inline struct poly_feature poly_point(const struct poly_points *points, size_t p)
 {
-    return (struct poly_feature){
-        .i = points->i[p], .j = points->j[p], .near = points->near[p], .kind = points->kind[p]};
+    struct poly_feature f = {.i = points->i[p], .j = points->j[p], .kind = points->kind[p]};
+    memcpy(f.near, points->near[p], sizeof f.near);
+    return f;
 }
-
-struct poly_state;
-typedef void poly_loop(struct brc_sim *sim, struct poly_state *st);
 
 struct poly_state {
     struct poly_shapes shapes;
     /* derived from the poses at each use */
     double (*world)[3];    /* vertices of all cores in space */
+    double (*plane)[4];    /* planes of all faces in space: outward normal n, and n . x */
     double (*turn)[3][3];  /* rotation matrix of each body, platens included */
     struct poly_list list; /* work space */
     size_t n_removed;      /* facets that erosion removes on either side */
     size_t n_bonds;
     double mean_area, mean_length; /* of the bonds */
-    poly_loop *pairs_loop;
+    struct poly_kernels kernels;
+    struct poly_block *block; /* work space of the loop over pairs */
 };
 
 static inline const struct poly_params *poly_params_of(const struct brc_sim *sim)
@@ -111,7 +115,7 @@ static inline const struct poly_params *poly_params_of(const struct brc_sim *sim
     return sim->params;
 }
 
-/* Rotation matrices and core vertices in space for the present poses. */
+/* Rotation matrices, core vertices and planes in space for the present poses. */
 void poly_world(const struct brc_sim *sim, const struct poly_state *st);
 
 /* rows.c: initial bonds, candidates, feature lists. */
@@ -121,13 +125,17 @@ int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_candidat
 /* Lists the features of a row of pairs, or of platens. */
 int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row);
 int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row);
+/* The points of a row that are awake come first, sorted by feature; then those that sleep, sorted
+ * by when they wake up. Brings in those that the row's room wakes. */
+void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
+/* A point that is awake and does not touch sleeps until its row has no more than `sleep` room. */
+void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
 
-/* forces.c, walls.c: the loops; that over pairs is chosen for the present options. */
+/* forces.c, walls.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);
 void poly_walls(struct brc_sim *sim, void *state);
 /* erode.c: cells become eroded cores with the mass of the whole cell (no porosity). */
 int poly_shape(struct brc_sim *sim, void *state);
-poly_loop *poly_choose_pairs(const struct brc_sim *sim);
 /* A core vertex (in space) against a platen whose body is at `at`; a is the grain, b the platen. */
 bool poly_touch_platen(struct poly_touch *t, const double v[3], const struct brc_platen *platen,
                        const double at[3], double radius);

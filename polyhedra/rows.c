@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Skins of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
-static const double LIST_SKIN = 0.02, WALL_SKIN = 0.05;
+static const double LIST_SKIN = 0.05, WALL_SKIN = 0.05;
 /* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
 static const double PLATEN_TOLERANCE = 1e-6;
 
@@ -226,6 +226,20 @@ static bool is_same(const struct poly_points *points, size_t p, const struct pol
     return i && j;
 }
 
+static void copy_point(const struct poly_points *points, size_t to, size_t from)
+{
+    points->kind[to] = points->kind[from];
+    points->active[to] = points->active[from];
+    points->i[to] = points->i[from];
+    points->j[to] = points->j[from];
+    memmove(points->near[to], points->near[from], sizeof points->near[from]);
+    points->sleep[to] = points->sleep[from];
+    points->hold[to] = points->hold[from];
+    points->weight[to] = points->weight[from];
+    memmove(points->n[to], points->n[from], sizeof points->n[from]);
+    memmove(points->xi[to], points->xi[from], sizeof points->xi[from]);
+}
+
 /* Moves the state of points that act to the front, in order; returns how many. */
 static size_t gather_active(const struct poly_points *points, size_t first, size_t n)
 {
@@ -233,17 +247,8 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
     for (size_t p = first; p < first + n; p++) {
         if (points->weight[p] <= 0)
             continue;
-        points->kind[kept] = points->kind[p];
-        points->active[kept] = points->active[p];
-        points->i[kept] = points->i[p];
-        points->j[kept] = points->j[p];
-        points->near[kept] = points->near[p];
-        points->sleep[kept] = points->sleep[p];
-        points->hold[kept] = HUGE_VAL;
-        points->weight[kept] = points->weight[p];
-        memmove(points->n[kept], points->n[p], sizeof points->n[p]);
-        memmove(points->xi[kept], points->xi[p], sizeof points->xi[p]);
-        kept++;
+        copy_point(points, kept, p);
+        points->hold[kept++] = HUGE_VAL;
     }
     return kept - first;
 }
@@ -254,13 +259,57 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     points->kind[p] = f->kind;
     points->i[p] = f->i;
     points->j[p] = f->j;
-    points->near[p] = f->near;
+    memcpy(points->near[p], f->near, sizeof f->near);
     points->sleep[p] = room - f->free;
     points->hold[p] = HUGE_VAL;
     points->active[p] = 0;
     points->weight[p] = 0;
     brc_set(points->n[p], 0, 0, 0);
     brc_set(points->xi[p], 0, 0, 0);
+}
+
+/* Order of the points that are awake, so that sums over them do not depend on how they came there.
+ * A vertex of `merged` comes before all others by its own number alone. */
+static bool comes_before(const struct poly_feature *f, const struct poly_points *points, size_t p,
+                         bool merged)
+{
+    if (f->kind != points->kind[p])
+        return f->kind < points->kind[p];
+    int32_t di = f->i - points->i[p], dj = f->j - points->j[p];
+    if (merged && f->kind == POLY_VERTEX_B)
+        return dj < 0;
+    return di != 0 || (merged && f->kind == POLY_VERTEX_A) ? di < 0 : dj < 0;
+}
+
+void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
+{
+    const struct poly_points *points = c->point_columns;
+    struct poly_rows *rows = c->model_columns;
+    size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
+    size_t next = first + (size_t)rows->awake[row];
+    for (; next < end && rows->room[row] <= points->sleep[next]; next++) {
+        struct poly_feature f = poly_point(points, next);
+        size_t p = next;
+        for (; p > first && comes_before(&f, points, p - 1, merged); p--)
+            copy_point(points, p, p - 1);
+        f.free = 0;
+        set_point(points, p, &f, rows->room[row]);
+    }
+    rows->awake[row] = (int32_t)(next - first);
+}
+
+void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep)
+{
+    const struct poly_points *points = c->point_columns;
+    struct poly_rows *rows = c->model_columns;
+    struct poly_feature f = poly_point(points, p);
+    size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
+    size_t awake = (size_t)c->p0[row] + (size_t)rows->awake[row]--;
+    /* the others that are awake close up; those that sleep are sorted by when they wake up */
+    for (; p + 1 < end && (p + 1 < awake || points->sleep[p + 1] > sleep); p++)
+        copy_point(points, p, p + 1);
+    f.free = 0;
+    set_point(points, p, &f, sleep);
 }
 
 /* Pairs that may touch at once first, then by the path that they are free for. */
@@ -295,7 +344,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
         while (p < first + kept && !is_same(points, p, &list->feature[k], merged))
             p++;
         if (p < first + kept)
-            points->near[p] = list->feature[k].near;
+            memcpy(points->near[p], list->feature[k].near, sizeof points->near[p]);
         else if (next < first + n)
             set_point(points, next++, &list->feature[k], room);
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the loops over grain pairs and over platens share: forces of one point, work of a row. */
+/* One row and one point at a time, for platens and for what is rare: forces of a point, work of a
+ * row. Grain pairs have the same in lanes (kernels.h). */
 #ifndef POLY_STEP_H
 #define POLY_STEP_H
 
@@ -241,20 +242,6 @@ static inline bool poly_is_awake(const struct brc_sim *sim, const struct brc_con
 {
     const struct poly_rows *rows = c->model_columns;
     return sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] >= rows->wake[row];
-}
-
-/* Bound of the path that points of b have made in the frame of a in this step. Motions that both
- * share, turns included, do not count; the last term is of second order in the turn. */
-static inline double poly_relative_path(const struct poly_motion *m, double reach_a, double reach_b)
-{
-    double u[3], w[3], turn2 = brc_norm2(m->wa) * m->dt * m->dt;
-    brc_cross(u, m->x, m->wa);
-    for (int k = 0; k < 3; k++) {
-        u[k] += m->vb[k] - m->va[k];
-        w[k] = m->wb[k] - m->wa[k];
-    }
-    return 1.1 * m->dt * (sqrt(brc_norm2(u)) + reach_b * sqrt(brc_norm2(w))) +
-           turn2 * (reach_a + 2 * reach_b);
 }
 
 /* A row without bond and listed features, which had no spring in the last step either: its forces

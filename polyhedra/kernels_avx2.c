@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kernels of kernels.h for AVX2. */
+#pragma GCC target("avx2")
+#include "polyhedra/kernels.h"
+
+struct poly_kernels poly_kernels_avx2(const struct brc_sim *sim)
+{
+    return choose_kernels(sim);
+}

@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kernels of kernels.h for any x86-64. */
+#include "polyhedra/kernels.h"
+
+struct poly_kernels poly_kernels_base(const struct brc_sim *sim)
+{
+    return choose_kernels(sim);
+}

@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The work lists of a block, four items at a time: how vertices and edges touch. */
+#ifndef POLY_TOUCHES_H
+#define POLY_TOUCHES_H
+
+#include "polyhedra/poly.h"
+
+/* --- vectors of lanes ------------------------------------------------------------------------- */
+
+BRC_LANES_INLINE brc_lanes gather(const double *column, const int32_t i[BRC_LANES])
+{
+    return (brc_lanes){column[i[0]], column[i[1]], column[i[2]], column[i[3]]};
+}
+
+/* One lane of a vector in all lanes. */
+BRC_LANES_INLINE void spread(brc_lanes r[3], const brc_lanes x[3], int lane)
+{
+    for (int k = 0; k < 3; k++)
+        r[k] = brc_lanes_all(x[k][lane]);
+}
+
+BRC_LANES_INLINE void set(brc_lanes r[3], brc_lanes x, brc_lanes y, brc_lanes z)
+{
+    r[0] = x;
+    r[1] = y;
+    r[2] = z;
+}
+
+BRC_LANES_INLINE void add(brc_lanes r[3], const brc_lanes a[3], const brc_lanes b[3])
+{
+    set(r, a[0] + b[0], a[1] + b[1], a[2] + b[2]);
+}
+
+BRC_LANES_INLINE void sub(brc_lanes r[3], const brc_lanes a[3], const brc_lanes b[3])
+{
+    set(r, a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+BRC_LANES_INLINE void scale(brc_lanes r[3], const brc_lanes a[3], brc_lanes s)
+{
+    set(r, a[0] * s, a[1] * s, a[2] * s);
+}
+
+/* r += s a */
+BRC_LANES_INLINE void axpy(brc_lanes r[3], brc_lanes s, const brc_lanes a[3])
+{
+    set(r, r[0] + s * a[0], r[1] + s * a[1], r[2] + s * a[2]);
+}
+
+BRC_LANES_INLINE void mask(brc_lanes r[3], brc_mask m, const brc_lanes a[3])
+{
+    set(r, brc_lanes_where(m, a[0]), brc_lanes_where(m, a[1]), brc_lanes_where(m, a[2]));
+}
+
+/* Where a > 0. */
+BRC_LANES_INLINE brc_mask positive(brc_lanes a)
+{
+    return brc_lanes_less(brc_lanes_all(0), a);
+}
+
+/* What memset would do, by stores of lanes. */
+BRC_LANES_INLINE void clear(brc_lanes *x, size_t size)
+{
+    for (size_t i = 0; i < size / sizeof *x; i++)
+        x[i] = brc_lanes_all(0);
+}
+
+/* --- touches ---------------------------------------------------------------------------------- */
+
+/* Lane i of four touches to their slots. */
+BRC_LANES_INLINE void put_touches(struct poly_block *block, const struct poly_touches *t,
+                                  const int32_t slot[BRC_LANES], int32_t n)
+{
+    for (int32_t i = 0; i < n; i++) {
+        struct poly_touches *to = &block->touch[slot[i] / BRC_LANES];
+        int lane = slot[i] % BRC_LANES;
+        to->delta[lane] = t->delta[i];
+        to->weight[lane] = t->weight[i];
+        for (int k = 0; k < 3; k++) {
+            to->n[k][lane] = t->n[k][i];
+            to->x[k][lane] = t->x[k][i];
+            to->g[k][lane] = t->g[k][i];
+            to->c[k][lane] = t->c[k][i];
+        }
+    }
+}
+
+BRC_LANES_INLINE void full_weight(struct poly_touches *t)
+{
+    t->weight = brc_lanes_all(1);
+    for (int k = 0; k < 3; k++)
+        t->g[k] = t->c[k] = brc_lanes_all(0);
+}
+
+BRC_LANES_INLINE void hide_apart(struct poly_touches *t, brc_mask touches)
+{
+    t->delta = brc_lanes_where(touches, t->delta);
+    t->weight = brc_lanes_where(touches, t->weight);
+    mask(t->n, touches, t->n);
+    mask(t->x, touches, t->x);
+    mask(t->g, touches, t->g);
+    mask(t->c, touches, t->c);
+}
+
+/* poly_smooth; slope is its derivative. */
+BRC_LANES_INLINE brc_lanes smooth(brc_lanes x, brc_lanes *slope)
+{
+    x = brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), brc_lanes_all(1));
+    *slope = 6 * x * (1 - x);
+    return x * x * (3 - 2 * x);
+}
+
+/* Distance s and outward normal n of v at a place that its foot has for sure. */
+BRC_LANES_INLINE void foot_known(brc_lanes *s, brc_lanes n[3], const struct poly_block *block,
+                                 const brc_lanes v[3], const struct poly_vertex_item *const at[],
+                                 const bool flat)
+{
+    double(*world)[3] = block->st->world;
+    int32_t i[2][BRC_LANES];
+    for (int k = 0; k < BRC_LANES; k++) {
+        i[0][k] = at[k]->place[0];
+        i[1][k] = at[k]->place[1];
+    }
+    if (flat) {
+        const double(*plane)[4] = (const double(*)[4])block->st->plane;
+        brc_lanes d;
+        for (int k = 0; k < 3; k++)
+            n[k] = (brc_lanes){plane[i[0][0]][k], plane[i[0][1]][k], plane[i[0][2]][k],
+                               plane[i[0][3]][k]};
+        d = (brc_lanes){plane[i[0][0]][3], plane[i[0][1]][3], plane[i[0][2]][3], plane[i[0][3]][3]};
+        *s = brc_lanes_dot(n, v) - d;
+        return;
+    }
+    brc_lanes p[3], along[3];
+    brc_lanes_gather3(p, world, i[0]);
+    brc_lanes_gather3(along, world, i[1]);
+    sub(along, along, p);
+    sub(n, v, p);
+    brc_lanes length2 = brc_lanes_dot(along, along);
+    brc_lanes part = brc_lanes_where(positive(length2), brc_lanes_dot(n, along) / length2);
+    axpy(n, -part, along);
+    *s = brc_lanes_sqrt(brc_lanes_dot(n, n));
+    scale(n, n, 1 / *s);
+}
+
+/* Number of vertex i of the other core that may lower the weight, or -1. */
+BRC_LANES_INLINE int32_t near_vertex(const struct poly_vertex_item *at, int32_t i, const bool all)
+{
+    if (all)
+        return i < at->n ? at->first + i : -1;
+    return at->near[i] >= 0 ? at->first + at->near[i] : -1;
+}
+
+/* poly_weigh_vertex with up to n_near vertices near; all: all of them. */
+BRC_LANES_INLINE void weigh_vertex(struct poly_touches *t, const struct poly_block *block,
+                                   const brc_lanes v[3], brc_lanes sign,
+                                   const struct poly_vertex_item *const at[], int32_t n_near,
+                                   const bool all)
+{
+    const double rest2 = block->rest * block->rest, ell2 = block->ell * block->ell;
+    brc_lanes product = brc_lanes_all(1), total[3], arm[3];
+    clear(total, sizeof total);
+    for (int k = 0; k < BRC_LANES && all; k++)
+        n_near = at[k]->n > n_near ? at[k]->n : n_near;
+    for (int32_t i = 0; i < n_near; i++) {
+        int32_t u[BRC_LANES];
+        brc_mask is_near;
+        brc_lanes r[3], slope;
+        for (int k = 0; k < BRC_LANES; k++) {
+            u[k] = near_vertex(at[k], i, all);
+            is_near[k] = u[k] < 0 ? 0 : -1;
+            u[k] = u[k] < 0 ? at[k]->vertex : u[k];
+        }
+        brc_lanes_gather3(r, block->st->world, u);
+        sub(r, v, r);
+        brc_lanes far = (brc_lanes_dot(r, r) - rest2) / ell2;
+        brc_lanes s = smooth(brc_lanes_pick(is_near, far, brc_lanes_all(1)), &slope);
+        for (int k = 0; k < 3; k++)
+            total[k] = total[k] * s + product * (r[k] * (2 * slope / ell2));
+        product *= s;
+    }
+    t->weight = 0.5 + 0.5 * product;
+    scale(t->g, total, 0.5 * sign);
+    sub(arm, v, t->x);
+    brc_lanes_cross(t->c, arm, t->g);
+}
+
+BRC_LANES_INLINE void vertex_kernel(struct poly_block *block, int list, const bool flat,
+                                    const int32_t n_near, const bool all)
+{
+    const struct poly_vertex_item *item = block->vertex[list];
+    int32_t n = block->n_vertices[list];
+    for (int32_t first = 0; first < n; first += BRC_LANES) {
+        const struct poly_vertex_item *at[BRC_LANES];
+        int32_t vertex[BRC_LANES], slot[BRC_LANES];
+        brc_lanes v[3], s, out[3], sign;
+        struct poly_touches t;
+        for (int k = 0; k < BRC_LANES; k++) {
+            at[k] = &item[first + k < n ? first + k : first];
+            vertex[k] = at[k]->vertex;
+            slot[k] = at[k]->slot;
+            sign[k] = at[k]->sign;
+        }
+        brc_lanes_gather3(v, block->st->world, vertex);
+        foot_known(&s, out, block, v, at, flat);
+        t.delta = block->rest - s; /* eq:gt12:5 */
+        scale(t.n, out, sign);     /* eq:gt12:3 */
+        for (int k = 0; k < 3; k++)
+            t.x[k] = v[k] - 0.5 * s * out[k];
+        full_weight(&t);
+        if (n_near > 0 || all)
+            weigh_vertex(&t, block, v, sign, at, n_near, all);
+        hide_apart(&t, brc_lanes_less(s, brc_lanes_all(block->rest))); /* eq:gt12:2 */
+        put_touches(block, &t, slot, n - first < BRC_LANES ? n - first : BRC_LANES);
+    }
+    block->n_vertices[list] = 0;
+}
+
+/* poly_foot_weight */
+BRC_LANES_INLINE brc_lanes foot_weight(brc_lanes t, brc_lanes length, double ell, brc_lanes *slope)
+{
+    brc_lanes s0, s1, w0 = smooth(t / ell, &s0), w1 = smooth((length - t) / ell, &s1);
+    *slope = (s0 * w1 - w0 * s1) / ell;
+    return w0 * w1;
+}
+
+/* Four crossing edge pairs, as struct poly_crossing. */
+struct crossings {
+    brc_lanes a[3], b[3], c, sin2, ta, tb, la, lb;
+};
+
+/* poly_crossing_weight */
+BRC_LANES_INLINE void weigh_crossing(struct poly_touches *t, const struct crossings *x, double ell,
+                                     brc_lanes d)
+{
+    brc_lanes da, db, dp, bn[3], ba[3], gn[3], per = 1 / x->sin2;
+    brc_lanes wa = foot_weight(x->ta, x->la, ell, &da), wb = foot_weight(x->tb, x->lb, ell, &db);
+    brc_lanes wp = smooth(x->sin2 / POLY_SKEW, &dp);
+    brc_lanes by_a = da * wb * wp, by_b = wa * db * wp, by_angle = wa * wb * dp / POLY_SKEW;
+    t->weight = wa * wb * wp;
+    brc_lanes_cross(bn, x->b, t->n);
+    brc_lanes_cross(ba, x->b, x->a);
+    for (int i = 0; i < 3; i++) {
+        t->g[i] = (by_a * (x->a[i] - x->c * x->b[i]) + by_b * (x->c * x->a[i] - x->b[i])) * per;
+        t->c[i] = -(d * per * (x->c * by_a + by_b) * bn[i] + 2 * x->c * by_angle * ba[i]);
+    }
+    brc_lanes_cross(gn, t->n, t->g);
+    axpy(t->c, 0.5 * d, gn);
+}
+
+/* poly_cross_lines, poly_cross_edges and poly_touch_crossing; side is +1 or -1 where it is known,
+ * else 0, and is known afterwards. */
+BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_block *block,
+                                      brc_lanes p[4][3], brc_lanes *side, const bool merged)
+{
+    struct crossings x;
+    brc_lanes r[3], m[3];
+    sub(x.a, p[1], p[0]);
+    sub(x.b, p[3], p[2]);
+    sub(r, p[2], p[0]);
+    brc_lanes_cross(m, x.a, x.b);
+    brc_lanes la2 = brc_lanes_dot(x.a, x.a), lb2 = brc_lanes_dot(x.b, x.b),
+              m2 = brc_lanes_dot(m, m);
+    brc_lanes c = brc_lanes_dot(x.a, x.b), ra = brc_lanes_dot(r, x.a), rb = brc_lanes_dot(r, x.b);
+    brc_lanes rm = brc_lanes_dot(r, m), ta = ra * lb2 - c * rb, tb = c * ra - rb * la2;
+    brc_mask touches = brc_lanes_less(POLY_PARALLEL * la2 * lb2, m2) & positive(ta) &
+                       brc_lanes_less(ta, m2) & positive(tb) & brc_lanes_less(tb, m2) &
+                       brc_lanes_less(rm * rm, block->rest * block->rest * m2);
+    x.la = brc_lanes_sqrt(la2);
+    x.lb = brc_lanes_sqrt(lb2);
+    brc_lanes per_a = 1 / x.la, per_b = 1 / x.lb, per_m = 1 / m2, root_m = brc_lanes_sqrt(per_m);
+    scale(x.a, x.a, per_a);
+    scale(x.b, x.b, per_b);
+    x.c = c * per_a * per_b;
+    x.sin2 = m2 * (per_a * per_a) * (per_b * per_b);
+    x.ta = ta * per_m * x.la;
+    x.tb = tb * per_m * x.lb;
+    brc_lanes d = rm * root_m;
+    brc_lanes met = brc_lanes_pick(positive(-d), brc_lanes_all(-1), brc_lanes_all(1));
+    *side = brc_lanes_pick(positive(brc_lanes_abs(*side)), *side, met);
+    d *= *side;
+    scale(t->n, m, root_m * *side); /* eq:gt12:3 */
+    t->delta = block->rest - d;     /* eq:gt12:5 */
+    for (int k = 0; k < 3; k++)
+        t->x[k] = p[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
+    full_weight(t);
+    if (merged)
+        weigh_crossing(t, &x, block->ell, d);
+    return touches & positive(t->weight);
+}
+
+BRC_LANES_INLINE void edge_kernel(struct poly_block *block, const bool merged)
+{
+    struct poly_points *points = block->sim->pairs.point_columns;
+    int32_t n = block->n_edges;
+    for (int32_t first = 0; first < n; first += BRC_LANES) {
+        int32_t end[4][BRC_LANES], slot[BRC_LANES];
+        brc_lanes p[4][3], side;
+        struct poly_touches t;
+        for (int k = 0; k < BRC_LANES; k++) {
+            const struct poly_edge_item *at = &block->edge[first + k < n ? first + k : first];
+            slot[k] = at->slot;
+            side[k] = at->side == 0 ? 0 : at->side == 1 ? 1 : -1;
+            for (int j = 0; j < 4; j++)
+                end[j][k] = at->end[j];
+        }
+        for (int j = 0; j < 4; j++)
+            brc_lanes_gather3(p[j], block->st->world, end[j]);
+        hide_apart(&t, touch_edges(&t, block, p, &side, merged));
+        int32_t n_here = n - first < BRC_LANES ? n - first : BRC_LANES;
+        put_touches(block, &t, slot, n_here);
+        for (int32_t k = 0; k < n_here; k++)
+            points->active[block->point[slot[k]]] = side[k] < 0 ? 2 : 1;
+    }
+    block->n_edges = 0;
+}
+
+BRC_LANES_INLINE void touch_kernel(struct poly_block *block, const bool merged)
+{
+    vertex_kernel(block, POLY_FLAT, true, merged ? 1 : 0, false);
+    if (merged) {
+        vertex_kernel(block, POLY_FLAT_NEAR, true, POLY_NEAR, false);
+        vertex_kernel(block, POLY_FLAT_ALL, true, 0, true);
+        vertex_kernel(block, POLY_SHARP, false, 1, false);
+        vertex_kernel(block, POLY_SHARP_NEAR, false, POLY_NEAR, false);
+        vertex_kernel(block, POLY_SHARP_ALL, false, 0, true);
+    }
+    edge_kernel(block, merged);
+}
+
+#endif
