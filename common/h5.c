@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -418,4 +419,86 @@ int brc_h5_get_array(const struct brc_h5_file *f, const struct brc_h5_array *a, 
     herr_t status = H5Dread(id, memory_type(a->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
     H5Dclose(id);
     return status < 0 ? brc_h5_read_failed(f, a->name) : 0;
+}
+
+/* ---- visiting ------------------------------------------------------------------------------ */
+
+struct visit {
+    const struct brc_h5_file *f;
+    int (*act)(void *user, const struct brc_h5_item *item);
+    void *user;
+};
+
+static const char *type_name(hid_t type)
+{
+    size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_STRING)
+        return "text";
+    if (H5Tget_class(type) == H5T_FLOAT)
+        return size == 8 ? "float64" : "float";
+    if (H5Tget_class(type) == H5T_INTEGER)
+        return size == 8 ? "int64" : size == 4 ? "int32" : size == 1 ? "uint8" : "integer";
+    return "other";
+}
+
+/* A short text attribute of an open dataset; "" when there is none. */
+static void label_of(hid_t id, const char *name, char *text, size_t size)
+{
+    text[0] = '\0';
+    if (H5Aexists(id, name) <= 0)
+        return;
+    hid_t label = H5Aopen(id, name, H5P_DEFAULT), type = H5Aget_type(label);
+    bool fits = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+                H5Tget_size(type) < size;
+    memset(text, 0, size);
+    if (!fits || H5Aread(label, type, text) < 0)
+        text[0] = '\0';
+    H5Tclose(type);
+    H5Aclose(label);
+}
+
+static void describe(hid_t id, struct brc_h5_item *item)
+{
+    hsize_t extent[2] = {1, 1};
+    hid_t space = H5Dget_space(id), type = H5Dget_type(id);
+    int rank = H5Sget_simple_extent_ndims(space);
+    if (rank == 1 || rank == 2)
+        H5Sget_simple_extent_dims(space, extent, NULL);
+    item->rows = (size_t)extent[0];
+    item->width = (size_t)extent[1];
+    item->type = type_name(type);
+    item->is_text = H5Tget_class(type) == H5T_STRING;
+    item->value = NAN;
+    if (!item->is_text && H5Sget_simple_extent_npoints(space) == 1 &&
+        H5Dread(id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &item->value) < 0)
+        item->value = NAN;
+    label_of(id, "unit", item->unit, sizeof item->unit);
+    label_of(id, "meaning", item->meaning, sizeof item->meaning);
+    H5Tclose(type);
+    H5Sclose(space);
+}
+
+static herr_t visit_link(hid_t where, const char *path, const H5L_info_t *info, void *user)
+{
+    const struct visit *v = user;
+    struct brc_h5_item item = {.path = path};
+    if (info->type != H5L_TYPE_HARD)
+        return 0;
+    hid_t object = H5Oopen(where, path, H5P_DEFAULT);
+    bool is_dataset = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+    if (is_dataset)
+        describe(object, &item);
+    if (object >= 0)
+        H5Oclose(object);
+    return is_dataset ? v->act(v->user, &item) : 0;
+}
+
+int brc_h5_visit(const struct brc_h5_file *f,
+                 int (*act)(void *user, const struct brc_h5_item *item), void *user)
+{
+    struct visit v = {f, act, user};
+    herr_t status = H5Lvisit(f->id, H5_INDEX_NAME, H5_ITER_INC, visit_link, &v);
+    if (status < 0 && f->ctx->code == 0)
+        return brc_h5_read_failed(f, "list of datasets");
+    return status;
 }

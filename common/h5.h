@@ -61,6 +61,20 @@ int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *
 int brc_h5_check_array(const struct brc_h5_file *f, const struct brc_h5_array *a);
 int brc_h5_get_array(const struct brc_h5_file *f, const struct brc_h5_array *a, void *data);
 
+/* A dataset as brc_h5_visit meets it, in the order of names. */
+struct brc_h5_item {
+    const char *path;
+    bool is_text;
+    const char *type; /* "float64", "int32", "text" and the like */
+    size_t rows, width;
+    double value;                /* of a single number, else not a number */
+    char unit[64], meaning[400]; /* "" where the dataset has none */
+};
+/* Calls act for each dataset of the file until it returns another value than 0, which is returned.
+ */
+int brc_h5_visit(const struct brc_h5_file *f,
+                 int (*act)(void *user, const struct brc_h5_item *item), void *user);
+
 /* Messages: what could not be written or read. */
 int brc_h5_write_failed(const struct brc_h5_file *f, const char *what);
 int brc_h5_read_failed(const struct brc_h5_file *f, const char *what);

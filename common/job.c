@@ -54,21 +54,57 @@ static int make_room(struct brc_context *ctx, struct brc_job *job)
     return 0;
 }
 
-int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
-                 const char *const *overrides, int n)
+static int judge(struct brc_context *ctx, struct brc_job *job)
 {
     const char *names[N_COMMON + BRC_JOB_MAX_MODELS];
     struct brc_param_list list;
     int i = 0;
+    for (; brc_job_section(i, &names[i], &list); i++)
+        BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
+    return brc_case_finish(ctx, &job->file, names, (size_t)i);
+}
+
+int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
+                 const char *const *overrides, int n)
+{
     memset(job, 0, sizeof *job);
     take_name(job, path);
     BRC_TRY(make_room(ctx, job));
     BRC_TRY(brc_case_read(ctx, path, &job->file));
     for (int k = 0; k < n; k++)
         BRC_TRY(brc_case_override(ctx, &job->file, overrides[k]));
-    for (; brc_job_section(i, &names[i], &list); i++)
-        BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
-    return brc_case_finish(ctx, &job->file, names, (size_t)i);
+    return judge(ctx, job);
+}
+
+/* The comment lines that brc_case_override has left, in their order. */
+static int repeat_overrides(struct brc_context *ctx, struct brc_job *job, const char *text)
+{
+    static const char mark[] = "# --set ";
+    int code = 0;
+    for (const char *line = text; code == 0 && *line;) {
+        size_t n = strcspn(line, "\n");
+        if (strncmp(line, mark, sizeof mark - 1) == 0) {
+            size_t length = n - (sizeof mark - 1);
+            char *assignment = brc_alloc(ctx, length + 1, 1);
+            if (!assignment)
+                return BRC_ERR_MEMORY;
+            memcpy(assignment, line + sizeof mark - 1, length);
+            code = brc_case_override(ctx, &job->file, assignment);
+            free(assignment);
+        }
+        line += n + (line[n] != '\0');
+    }
+    return code;
+}
+
+int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *name, const char *text)
+{
+    memset(job, 0, sizeof *job);
+    take_name(job, name);
+    BRC_TRY(make_room(ctx, job));
+    BRC_TRY(brc_case_parse(ctx, name, text, strlen(text), &job->file));
+    BRC_TRY(repeat_overrides(ctx, job, text));
+    return judge(ctx, job);
 }
 
 void brc_job_free(struct brc_job *job)

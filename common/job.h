@@ -25,6 +25,8 @@ struct brc_job {
  */
 int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
                  const char *const *overrides, int n);
+/* The same from the text of a case with its overrides, as brc_case_text gives it. */
+int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *name, const char *text);
 void brc_job_free(struct brc_job *job);
 /* A registered model by name; an unknown one is an error that lists all. */
 int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model);

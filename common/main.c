@@ -2,6 +2,8 @@
 /* The command line. */
 #include "comm.h"
 #include "compare.h"
+#include "export.h"
+#include "info.h"
 #include "run.h"
 
 #include <limits.h>
@@ -13,25 +15,28 @@
 enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256 };
 
 struct options {
-    const char *operand; /* CASE, or the section of `params` */
-    const char *model, *dir;
+    const char *operand; /* CASE, or the section of `params`, or a file */
+    const char *model, *dir, *table, *format;
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
     bool is_resumed, is_forced, is_quiet, is_help;
 };
 
-/* Options by command: R run, C compare. */
+/* Options by command: R run, C compare, X export. */
 static const struct option {
     const char *name, *value, *commands, *help;
 } options[] = {
     {"--model", "NAME", "R", "contact model; default: `model` of the case"},
     {"-o", "DIR", "RC", "folder of results; default: results/<case>/<model>, results/<case>"},
+    {"-o", "FILE", "X", "what to write; default: on standard output"},
+    {"--table", "NAME", "X", "CSV of this table: curve, events, bodies, pairs, ..."},
+    {"--format", "FORMAT", "X", "stl: a solid a fragment; tess: the specimen for Neper"},
     {"--set", "KEY=VALUE", "RC",
      "replace a value of the case, as vgcm.e_bar=\"50 GPa\"; repeatable"},
     {"--resume", NULL, "RC", "go on from the saved state, to the same bits"},
     {"--force", NULL, "RC", "replace results that are there"},
     {"--quiet", NULL, "RC", "no progress, no log lines"},
-    {"--help", NULL, "RCPM", "this text"},
+    {"--help", NULL, "RCPMIX", "this text"},
 };
 enum { N_OPTIONS = sizeof options / sizeof options[0] };
 
@@ -44,6 +49,8 @@ struct command {
 
 static int act_run(struct brc_context *ctx, const struct options *o);
 static int act_compare(struct brc_context *ctx, const struct options *o);
+static int act_info(struct brc_context *ctx, const struct options *o);
+static int act_export(struct brc_context *ctx, const struct options *o);
 static int act_params(struct brc_context *ctx, const struct options *o);
 static int act_models(struct brc_context *ctx, const struct options *o);
 
@@ -57,6 +64,13 @@ static const struct command commands[] = {
      "breccia compare cases/demo_tension.yaml -o results/pair",
      "Each model's results go to DIR/<model>; the table to DIR/compare.txt, the pictures to DIR.\n",
      act_compare},
+    {"info", 'I', "FILE", "tell what a saved state or a frame holds",
+     "breccia info results/pair/vgcm/state.h5",
+     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n",
+     act_info},
+    {"export", 'X', "FILE", "write tables, fragments or the specimen for other programs",
+     "breccia export results/pair/vgcm/state.h5 --format stl -o fragments.stl",
+     "FILE is a saved state, or for --format tess a case file, too.\n", act_export},
     {"params", 'P', "[SECTION]",
      "list the keys of a section of the case file: a model, specimen, test, run, output",
      "breccia params vgcm", "Without a section: all of them.\n", act_params},
@@ -162,6 +176,10 @@ static int take_option(struct brc_context *ctx, struct options *o, const char *n
         o->model = value;
     } else if (strcmp(name, "-o") == 0) {
         o->dir = value;
+    } else if (strcmp(name, "--table") == 0) {
+        o->table = value;
+    } else if (strcmp(name, "--format") == 0) {
+        o->format = value;
     } else if (strcmp(name, "--set") == 0) {
         if (o->n_overrides == MAX_OVERRIDES)
             BRC_FAIL(ctx, BRC_ERR_USAGE, "more than %d --set; write a case file", MAX_OVERRIDES);
@@ -210,11 +228,12 @@ static int read_words(struct brc_context *ctx, const struct command *c, char **w
 {
     for (int i = 0; words[i]; i++)
         BRC_TRY(read_word(ctx, c, words, &i, o));
-    bool needs_case = c->letter == 'R' || c->letter == 'C';
+    bool needs_file = *c->operand && *c->operand != '[';
     if (o->is_help)
         return 0;
-    if (needs_case && !o->operand)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a case file: %s", c->name, c->example);
+    if (needs_file && !o->operand)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a %s: %s", c->name,
+                 strcmp(c->operand, "CASE") == 0 ? "case file" : "file", c->example);
     if (o->is_resumed && o->is_forced)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--resume and --force exclude each other");
     return 0;
@@ -369,6 +388,20 @@ static int act_compare(struct brc_context *ctx, const struct options *o)
     if (code == BRC_ERR_INTERRUPTED)
         tell_resume(ctx, "compare", o);
     return code;
+}
+
+static int act_info(struct brc_context *ctx, const struct options *o)
+{
+    return brc_info_print(ctx, stdout, o->operand);
+}
+
+static int act_export(struct brc_context *ctx, const struct options *o)
+{
+    const char *what = o->format ? o->format : o->table;
+    if (!what || (o->format && o->table))
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
+    return o->table ? brc_export_table(ctx, o->operand, o->table, o->dir)
+                    : brc_export_format(ctx, o->operand, o->format, o->dir);
 }
 
 static int act_params(struct brc_context *ctx, const struct options *o)

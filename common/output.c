@@ -187,24 +187,29 @@ static void csv_value(FILE *out, const struct brc_field *f, const void *column, 
     }
 }
 
-int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t)
+void brc_output_table(FILE *out, const struct brc_table *t)
 {
-    struct draft d;
-    BRC_TRY(open_draft(ctx, &d, path));
-    csv_header(d.file, t);
+    csv_header(out, t);
     for (size_t row = 0; row < t->n; row++) {
         const char *comma = "";
         for (int i = 0; i < t->set.n; i++) {
             const struct brc_field *f = &t->set.fields[i];
             size_t width = (size_t)f->width;
             for (size_t j = 0; j < width; j++) {
-                fputs(comma, d.file);
-                csv_value(d.file, f, brc_table_column(t, i), row * width + j);
+                fputs(comma, out);
+                csv_value(out, f, brc_table_column(t, i), row * width + j);
                 comma = ",";
             }
         }
-        fputc('\n', d.file);
+        fputc('\n', out);
     }
+}
+
+int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t)
+{
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    brc_output_table(d.file, t);
     return close_draft(ctx, &d);
 }
 

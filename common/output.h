@@ -6,6 +6,8 @@
 #include "fields.h"
 #include "params.h"
 
+#include <stdio.h>
+
 #define BRC_OUTPUT_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                       \
     FLAG(plots, "on", "curves and pictures of cracks by gnuplot, where it is installed")    \
     REAL(facet_part, "1", "0.5", "(0, 1]",                                                  \
@@ -76,6 +78,7 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
 const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name);
 /* One column a value, the header names them with their units: "step [1],x_1 [m],x_2 [m]". */
 int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t);
+void brc_output_table(FILE *out, const struct brc_table *t);
 /* A text file with this content. */
 int brc_output_text(struct brc_context *ctx, const char *path, const char *text);
 

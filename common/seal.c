@@ -110,3 +110,14 @@ int brc_seal_check(struct brc_context *ctx, const char *path, int format)
     fclose(file);
     return code;
 }
+
+bool brc_seal_is_there(const char *path)
+{
+    char text[sizeof MARK - 1];
+    FILE *file = fopen(path, "rb");
+    bool is_there =
+        file && fread(text, sizeof text, 1, file) == 1 && memcmp(text, MARK, sizeof text) == 0;
+    if (file)
+        fclose(file);
+    return is_there;
+}

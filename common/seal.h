@@ -12,6 +12,8 @@ enum { BRC_SEAL_SIZE = 512 };
 
 /* The seal to stand before n bytes. */
 void brc_seal_make(char seal[BRC_SEAL_SIZE], int format, const void *bytes, size_t n);
+/* The file begins as a sealed one does. */
+bool brc_seal_is_there(const char *path);
 /* Fails unless the file is there, sealed, of this format, and as it was when it was sealed. */
 int brc_seal_check(struct brc_context *ctx, const char *path, int format);
 
