@@ -2,6 +2,7 @@
 #include "specimen.h"
 
 #include "hilbert.h"
+#include "neper.h"
 #include "numbers.h"
 #include "packing_cache.h"
 #include "seeds.h"
@@ -198,17 +199,31 @@ static int tessellate(struct brc_context *ctx, struct brc_specimen *s)
     return code;
 }
 
+/* Cells and domain as a file has them. */
+static int read_tess(struct brc_context *ctx, struct brc_specimen *s)
+{
+    const struct brc_specimen_params *p = &s->params;
+    if (p->shape != BRC_SHAPE_POLYHEDRON)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "specimen.grains: tess has its shape from the file; write specimen.shape: "
+                 "polyhedron");
+    BRC_TRY(brc_neper_read(ctx, p->tess, p->tess_unit, p->tess_spheres, &s->domain, &s->facets));
+    brc_facets_mark_contacts(&s->facets, p->min_area_ratio);
+    return p->tess_spheres ? check_centres(ctx, &s->facets) : 0;
+}
+
 int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_params *params,
                         struct brc_specimen *out)
 {
+    double centroid[3], inertia[3][3];
+    bool is_read = params->grains == BRC_GRAINS_TESS;
     *out = (struct brc_specimen){.params = *params};
     brc_convex_init(&out->domain);
-    int code = make_domain(ctx, params, &out->domain);
-    if (code == 0) {
-        double centroid[3], inertia[3][3];
+    int code = is_read ? read_tess(ctx, out) : make_domain(ctx, params, &out->domain);
+    if (code == 0)
         brc_convex_mass(&out->domain, &out->domain_volume, centroid, inertia);
+    if (code == 0 && !is_read)
         code = tessellate(ctx, out);
-    }
     if (code == 0)
         measure(out);
     else

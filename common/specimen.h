@@ -9,7 +9,13 @@
 #include "params.h"
 
 enum brc_shape { BRC_SHAPE_BOX, BRC_SHAPE_CYLINDER, BRC_SHAPE_POLYHEDRON };
-enum brc_grains { BRC_GRAINS_PACKING, BRC_GRAINS_GRID, BRC_GRAINS_MESH, BRC_GRAINS_POINTS };
+enum brc_grains {
+    BRC_GRAINS_PACKING,
+    BRC_GRAINS_GRID,
+    BRC_GRAINS_MESH,
+    BRC_GRAINS_POINTS,
+    BRC_GRAINS_TESS
+};
 
 #define BRC_SPECIMEN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                            \
     CHOICE(shape, "box|cylinder|polyhedron", "cylinder", "outer shape")                            \
@@ -18,10 +24,14 @@ enum brc_grains { BRC_GRAINS_PACKING, BRC_GRAINS_GRID, BRC_GRAINS_MESH, BRC_GRAI
     REAL(height, "m", "160 mm", "(0, inf)", "cylinder: height (thickness of a disc), along z")     \
     INT(sides, "64", "[4, 1024]", "cylinder: sides of the prism, equal area to the circle; even")  \
     TEXT(planes, "", "polyhedron: file of planes, one 'nx ny nz d' a line, n . x <= d, in metres") \
-    CHOICE(grains, "packing|grid|mesh|points", "packing",                                          \
+    CHOICE(grains, "packing|grid|mesh|points|tess", "packing",                                     \
            "packing: spheres grown to contact, Laguerre cells; grid: one random seed per cubic "   \
-           "cell, Voronoi cells; mesh: extruded triangles of a disc; points: seeds of a file")     \
+           "cell, Voronoi cells; mesh: extruded triangles of a disc; points: seeds of a file; "    \
+           "tess: cells and shape of a Neper file")                                                \
     TEXT(points, "", "points: file of seeds, 'x y z' or 'x y z radius' a line, in metres")         \
+    TEXT(tess, "", "tess: tessellation file of Neper (.tess), three-dimensional, flat faces")      \
+    REAL(tess_unit, "m", "1 m", "(0, inf)", "tess: what the length 1 is in the file")              \
+    FLAG(tess_spheres, "off", "tess: weights of the seeds are radii of spheres")                   \
     REAL(diameter_min, "m", "4 mm", "(0, inf)", "packing: smallest sphere diameter")               \
     REAL(diameter_max, "m", "6 mm", "(0, inf)", "packing: largest sphere diameter")                \
     REAL(solid_fraction, "1", "0.676", "(0.1, 0.75)", "packing: sphere volume / domain volume")    \
