@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time of a step of the 1000 bonded Voronoi cells of cases/gt12_block.yaml, at the start and
- * at about half of the peak load in unconfined compression, one core. Lines of "name value unit",
- * user CPU time. */
+/* Time of a whole step of polyhedra: the 1000 bonded Voronoi cells of cases/gt12_block.yaml at half
+ * of their peak load by each rule, the same cells unbonded in isotropic compression, the 512
+ * dodecahedra, and a step in which many bonds break against the steps before it. */
 #include "bench.h"
 
 #include "polyhedra/poly.h"
+#include "tests/dodecahedra.h"
+#include "tests/fixture.h"
 
 #include <math.h>
 
 extern const struct brc_model brc_model_polyhedra;
+
+enum { REPEATS = 60 };
 
 static void count(void *user, const struct poly_active *active)
 {
@@ -16,42 +20,148 @@ static void count(void *user, const struct poly_active *active)
     *(size_t *)user += 1;
 }
 
-/* Least time of a step over batches of 5: other work on the machine only adds to it. */
-static void time_steps(struct brc_sim *sim, const char *rule, const char *when)
+static size_t count_active(const struct brc_sim *sim)
 {
-    double least = HUGE_VAL;
-    size_t active = 0;
-    for (int k = 0; k < 20; k++) {
-        double begin = cpu_seconds();
-        for (int i = 0; i < 5; i++)
-            must(sim->ctx, brc_sim_step(sim));
-        least = fmin(least, (cpu_seconds() - begin) / 5);
-    }
-    poly_each_active(sim, sim->state, count, &active);
-    printf("polyhedra_%s_%s_step %.4g ms\n", rule, when, 1e3 * least);
-    printf("polyhedra_%s_%s_active %zu 1\n", rule, when, active);
-    printf("polyhedra_%s_%s_stress %.4g MPa\n", rule, when,
-           1e-6 * sim->rig.force / sim->rig.section);
+    size_t n = 0;
+    poly_each_active(sim, sim->state, count, &n);
+    return n;
 }
 
-static void run(struct brc_context *ctx, const struct brc_specimen *specimen, const char *rule)
+static double step_seconds(struct brc_sim *sim)
+{
+    double begin = cpu_seconds();
+    must(sim->ctx, brc_sim_step(sim));
+    return cpu_seconds() - begin;
+}
+
+static void report_steps(struct bench_times *t, const struct brc_sim *sim, const char *name,
+                         double bar)
+{
+    struct bench_value v = {.name = name,
+                            .value = 1e3 * bench_quantile(t, 0.5),
+                            .unit = "ms",
+                            .bar = bar,
+                            .spread = 1e3 * (bench_quantile(t, 0.75) - bench_quantile(t, 0.25))};
+    bench_report(&v);
+    printf("%s: %zu active springs, least %.4g ms\n", name, count_active(sim),
+           1e3 * bench_quantile(t, 0));
+}
+
+static void make(struct brc_context *ctx, struct brc_sim *sim, const struct brc_specimen *specimen,
+                 const char *const settings[][2], const char *kind, const char *rate)
 {
     struct poly_params p;
     struct brc_test_params t;
     struct brc_run_params r;
-    struct brc_sim sim;
     must(ctx, brc_params_defaults(ctx, brc_model_polyhedra.params, &p));
     must(ctx, brc_params_defaults(ctx, brc_test_param_list, &t));
     must(ctx, brc_params_defaults(ctx, brc_run_param_list, &r));
-    set(ctx, brc_model_polyhedra.params, &p, "features", rule);
+    for (int i = 0; settings[i][0]; i++)
+        set(ctx, brc_model_polyhedra.params, &p, settings[i][0], settings[i][1]);
+    set(ctx, brc_test_param_list, &t, "kind", kind);
     set(ctx, brc_test_param_list, &t, "loading", "fixed");
-    set(ctx, brc_test_param_list, &t, "rate", "1e-5 1/s");
-    must(ctx, brc_sim_create(ctx, &sim, &brc_model_polyhedra, &p, specimen, &t, &r));
-    time_steps(&sim, rule, "start");
-    for (int i = 0; i < 900; i++)
+    set(ctx, brc_test_param_list, &t, "rate", rate);
+    set(ctx, brc_test_param_list, &t, "strain_max", "1");
+    if (getenv("BENCH_SIMD"))
+        set(ctx, brc_run_param_list, &r, "simd", getenv("BENCH_SIMD"));
+    must(ctx, brc_sim_create(ctx, sim, &brc_model_polyhedra, &p, specimen, &t, &r));
+}
+
+static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen, const char *rule,
+                   const char *name, double bar)
+{
+    const char *const settings[][2] = {{"features", rule}, {NULL, NULL}};
+    struct brc_sim sim;
+    struct bench_times t = {.n = 0};
+    make(ctx, &sim, specimen, settings, "compression", "1e-5 1/s");
+    for (int i = 0; i < 1000; i++)
         must(ctx, brc_sim_step(&sim));
-    time_steps(&sim, rule, "half_peak");
+    for (int i = 0; i < REPEATS; i++)
+        bench_note(&t, step_seconds(&sim));
+    report_steps(&t, &sim, name, bar);
     brc_sim_free(&sim);
+}
+
+/* Every grain moves towards the middle. */
+static void compress(struct brc_sim *sim, double rate)
+{
+    struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains; i++)
+        for (int k = 0; k < 3; k++)
+            b->v[i][k] = -rate * (b->x[i][k] - 0.05);
+}
+
+static void unbonded(struct brc_context *ctx, const struct brc_specimen *specimen)
+{
+    const char *const settings[][2] = {{"bonds", "off"}, {NULL, NULL}};
+    struct brc_sim sim;
+    struct bench_times t = {.n = 0};
+    make(ctx, &sim, specimen, settings, "none", "1e-5 1/s");
+    for (int i = 0; i < 300; i++) {
+        compress(&sim, 1e-5);
+        must(ctx, brc_sim_step(&sim));
+    }
+    for (int i = 0; i < REPEATS; i++) {
+        compress(&sim, 1e-5);
+        bench_note(&t, step_seconds(&sim));
+    }
+    report_steps(&t, &sim, "polyhedra_unbonded_1000_ms_step", 3);
+    brc_sim_free(&sim);
+}
+
+/* The largest avalanche of a compression with weaker bonds, against the steps without a break. */
+static void breaking(struct brc_context *ctx, const struct brc_specimen *specimen)
+{
+    const char *const settings[][2] = {{"eps_th", "0.001"}, {NULL, NULL}};
+    struct brc_sim sim;
+    struct bench_times calm = {.n = 0}, avalanche = {.n = 0};
+    make(ctx, &sim, specimen, settings, "compression", "1e-5 1/s");
+    for (int i = 0; i < 1500 && avalanche.n < 20; i++) {
+        size_t before = sim.events.table.n;
+        double time = step_seconds(&sim);
+        size_t n = sim.events.table.n - before;
+        if (n >= 50)
+            bench_note(&avalanche, time);
+        else if (n < 5)
+            bench_note(&calm, time);
+    }
+    printf("polyhedra_break: %d steps of 50 breaks or more, %zu breaks\n", avalanche.n,
+           sim.events.table.n);
+    struct bench_value v = {.name = "polyhedra_break_step_ratio",
+                            .value = bench_quantile(&avalanche, 0.5) / bench_quantile(&calm, 0.5),
+                            .unit = "1",
+                            .bar = 1.3};
+    if (avalanche.n > 0)
+        bench_report(&v);
+    brc_sim_free(&sim);
+}
+
+static void dodecahedra(void)
+{
+    static struct dodecahedra d;
+    static struct brc_convex cell[512];
+    struct brc_plane planes[20], placed[12];
+    struct bench_times t = {.n = 0};
+    char settings[128];
+    void *state;
+    fixture_open(&state);
+    struct fixture *f = state;
+    dodecahedra_read(&d);
+    dodecahedra_planes(&d, planes);
+    for (size_t i = 0; i < 512; i++) {
+        brc_convex_init(&cell[i]);
+        dodecahedra_place(&d, i, planes, d.radius, placed);
+        must(&f->ctx, brc_convex_from_planes(&f->ctx, &cell[i], placed, 12, d.x[i], 2));
+    }
+    fixture_loose(f, cell, NULL, 512);
+    snprintf(settings, sizeof settings, "radius: %.17g m; features: strict; gn: 0 1/s", d.radius);
+    fixture_free_sim(f, &brc_model_polyhedra, settings, "dt: 1e-9 s");
+    for (int i = 0; i < 10 * REPEATS; i++)
+        bench_note(&t, step_seconds(&f->sim));
+    report_steps(&t, &f->sim, "polyhedra_dodecahedra_512_ms_step", 0.25);
+    for (size_t i = 0; i < 512; i++)
+        brc_convex_free(&cell[i]);
+    fixture_close(&state);
 }
 
 int main(void)
@@ -66,9 +176,12 @@ int main(void)
     set(&ctx, brc_specimen_param_list, &s, "size", "10 cm, 10 cm, 10 cm");
     set(&ctx, brc_specimen_param_list, &s, "cells", "10, 10, 10");
     must(&ctx, brc_specimen_create(&ctx, &s, &specimen));
-    run(&ctx, &specimen, "merged");
-    run(&ctx, &specimen, "strict");
-    run(&ctx, &specimen, "closed");
+    bonded(&ctx, &specimen, "merged", "polyhedra_bonded_1000_ms_step", 1.5);
+    bonded(&ctx, &specimen, "strict", "polyhedra_bonded_strict_1000_ms_step", 0);
+    bonded(&ctx, &specimen, "closed", "polyhedra_bonded_closed_1000_ms_step", 0);
+    unbonded(&ctx, &specimen);
+    breaking(&ctx, &specimen);
+    dodecahedra();
     brc_specimen_free(&specimen);
     return 0;
 }

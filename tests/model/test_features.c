@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contact detection of polyhedra against a brute-force twin: random convex bodies and the packed
  * dodecahedra whose contacts three independent programs have counted. */
+#include "tests/dodecahedra.h"
 #include "tests/model/gas.h"
 #include "tests/model/twin_features.h"
 
@@ -10,7 +11,6 @@
 #include <stdlib.h>
 
 static const double RADIUS = 1e-3;
-static const char DODECAHEDRA[] = "tests/data/dodecahedra-512.txt";
 
 /* Active feature contacts of the simulation, by vertices and by edges. */
 static void count_active(const struct fixture *f, int *vertices, int *edges)
@@ -239,79 +239,6 @@ static void kept_features_of_a_gas(void **state)
 /* --- the file ----------------------------------------------------------------------------------
  */
 
-struct dodecahedra {
-    double radius, vertex[20][3], x[512][3], q[512][4];
-    size_t n;
-};
-
-static void read_dodecahedra(struct dodecahedra *d)
-{
-    FILE *file = fopen(DODECAHEDRA, "r");
-    char line[512];
-    size_t n_vertices = 0;
-    assert_non_null(file);
-    d->n = 0;
-    while (fgets(line, sizeof line, file)) {
-        if (line[0] == 'r')
-            assert_int_equal(sscanf(line, "r %lf", &d->radius), 1);
-        if (line[0] == 'v' && n_vertices < 20) {
-            double *v = d->vertex[n_vertices++];
-            assert_int_equal(sscanf(line, "v %lf %lf %lf", &v[0], &v[1], &v[2]), 3);
-        }
-        if (line[0] == 'b' && d->n < 512) {
-            double *x = d->x[d->n], *q = d->q[d->n];
-            assert_int_equal(sscanf(line, "b %lf %lf %lf %lf %lf %lf %lf", &x[0], &x[1], &x[2],
-                                    &q[0], &q[1], &q[2], &q[3]),
-                             7);
-            d->n++;
-        }
-    }
-    fclose(file);
-    assert_int_equal(n_vertices, 20);
-    assert_int_equal(d->n, 512);
-}
-
-/* Face normals of a dodecahedron from its vertices: the five that are farthest along each of the
- * twelve directions through the vertices of the dual icosahedron; found as sums of triples. */
-static size_t dodecahedron_planes(const struct dodecahedra *d, struct brc_plane *planes)
-{
-    size_t n = 0;
-    for (int i = 0; i < 20; i++)
-        for (int j = 0; j < i; j++)
-            for (int k = 0; k < j; k++) {
-                double u[3], v[3], m[3];
-                brc_sub(u, d->vertex[j], d->vertex[i]);
-                brc_sub(v, d->vertex[k], d->vertex[i]);
-                brc_cross(m, u, v);
-                brc_normalise(m, m);
-                if (brc_dot(m, d->vertex[i]) < 0)
-                    brc_scale(m, m, -1);
-                double height = brc_dot(m, d->vertex[i]);
-                bool is_face = true, is_new = true;
-                for (int l = 0; l < 20; l++)
-                    is_face &= brc_dot(m, d->vertex[l]) < height * (1 + 1e-9);
-                for (size_t l = 0; l < n; l++)
-                    is_new &= brc_dot(m, planes[l].n) < 0.99;
-                if (is_face && is_new) {
-                    brc_copy(planes[n].n, m);
-                    planes[n].d = height;
-                    planes[n].id = (int32_t)n;
-                    n++;
-                }
-            }
-    return n;
-}
-
-static void place_planes(const struct dodecahedra *d, size_t body, const struct brc_plane *from,
-                         double out, struct brc_plane *to)
-{
-    for (int i = 0; i < 12; i++) {
-        brc_quat_rotate(to[i].n, d->q[body], from[i].n);
-        to[i].d = from[i].d + out + brc_dot(to[i].n, d->x[body]);
-        to[i].id = i;
-    }
-}
-
 static void dodecahedra_are_counted_right(void **state)
 {
     struct fixture *f = *state;
@@ -319,14 +246,14 @@ static void dodecahedra_are_counted_right(void **state)
     struct brc_plane planes[20], placed[12];
     struct brc_convex *cell = test_calloc(512, sizeof *cell), core;
     struct twin_core *twin = test_calloc(512, sizeof *twin);
-    read_dodecahedra(d);
-    assert_int_equal(dodecahedron_planes(d, planes), 12);
+    dodecahedra_read(d);
+    assert_int_equal(dodecahedra_planes(d, planes), 12);
     brc_convex_init(&core);
     for (size_t i = 0; i < 512; i++) {
         brc_convex_init(&cell[i]);
-        place_planes(d, i, planes, d->radius, placed);
+        dodecahedra_place(d, i, planes, d->radius, placed);
         CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &cell[i], placed, 12, d->x[i], 2));
-        place_planes(d, i, planes, 0, placed);
+        dodecahedra_place(d, i, planes, 0, placed);
         CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &core, placed, 12, d->x[i], 2));
         twin_core_from(&twin[i], &core);
     }
