@@ -18,7 +18,6 @@ struct side {
     const double (*v)[3]; /* own vertices in space */
     const double *x;      /* the other's pose */
     const double (*r)[3];
-    double radius;     /* of the own core about its centre */
     double *height;    /* [n_vertices of own][n_faces of other] above the planes */
     bool *near_vertex; /* may come within reach of the other core */
     bool *near_edge;
@@ -229,9 +228,9 @@ static double path_to_inside(const double ends[4][3], double radius, double skin
     return most;
 }
 
-/* Relative path before edges i and j can touch; radius as for path_to_end, paths up to skin. */
+/* Relative path before edges i and j can touch; right for paths up to skin. */
 static double path_to_edges(const struct poly_pair *p, int32_t i, int32_t j, enum poly_rule rule,
-                            double radius, double skin)
+                            double skin)
 {
     double ends[4][3];
     for (int k = 0; k < 2; k++) {
@@ -241,19 +240,18 @@ static double path_to_edges(const struct poly_pair *p, int32_t i, int32_t j, enu
     double path = poly_edge_distance(ends[0], ends[1], ends[2], ends[3]) - p->rest;
     if (rule == POLY_CLOSED || path >= skin)
         return path;
-    return poly_most(path, path_to_inside(ends, radius, skin));
+    return poly_most(path, path_to_inside(ends, p->reach, skin));
 }
 
 static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct side sides[2],
                       const struct poly_pair *p, enum poly_rule rule, double skin)
 {
-    double radius = poly_least(sides[0].radius, sides[1].radius);
     for (int32_t i = 0; i < p->a.n_edges; i++)
         for (int32_t j = 0; j < p->b.n_edges && sides[0].near_edge[i]; j++) {
             if (!sides[1].near_edge[j])
                 continue;
             struct poly_feature f = {
-                .free = path_to_edges(p, i, j, rule, radius, skin),
+                .free = path_to_edges(p, i, j, rule, skin),
                 .i = i,
                 .j = j,
                 .kind = POLY_EDGES,
@@ -262,15 +260,6 @@ static int list_edges(struct brc_context *ctx, struct poly_list *l, const struct
                 BRC_TRY(poly_list_add(ctx, l, &f));
         }
     return 0;
-}
-
-/* Radius of a core about its centre: turns are at most its path over this. */
-static double core_radius(const struct poly_core *c)
-{
-    double most = 0;
-    for (int32_t v = 0; v < c->n_vertices; v++)
-        most = poly_most(most, brc_norm2(c->vertex[v]));
-    return sqrt(most);
 }
 
 int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
@@ -283,10 +272,10 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
     double reach = p->rest + skin;
     l->n = 0;
     BRC_TRY(reserve(ctx, l, ha + hb, na + nb));
-    struct side sides[2] = {{&p->a, &p->b, p->va, p->xb, p->rb, core_radius(&p->a), l->height,
-                             l->near, l->near + p->a.n_vertices},
-                            {&p->b, &p->a, p->vb, p->xa, p->ra, core_radius(&p->b), l->height + ha,
-                             l->near + na, l->near + na + p->b.n_vertices}};
+    struct side sides[2] = {
+        {&p->a, &p->b, p->va, p->xb, p->rb, l->height, l->near, l->near + p->a.n_vertices},
+        {&p->b, &p->a, p->vb, p->xa, p->ra, l->height + ha, l->near + na,
+         l->near + na + p->b.n_vertices}};
     double gap = poly_most(measure_heights(&sides[0]), measure_heights(&sides[1]));
     *allowance = poly_most(skin, gap - p->rest);
     if (gap >= reach)
@@ -302,8 +291,7 @@ double poly_free_path(const struct poly_pair *p, const struct poly_feature *f, e
                       double most)
 {
     if (f->kind == POLY_EDGES)
-        return path_to_edges(p, f->i, f->j, rule,
-                             poly_least(core_radius(&p->a), core_radius(&p->b)), most);
+        return path_to_edges(p, f->i, f->j, rule, most);
     bool of_b = f->kind == POLY_VERTEX_B;
     const struct poly_core *c = of_b ? &p->a : &p->b;
     double q[3];

@@ -43,6 +43,7 @@ struct poly_pair {
     const double (*va)[3], (*vb)[3]; /* core vertices in space */
     double rest;                     /* m, R1 + R2: distance without overlap */
     double ell;                      /* m, smoothing length of `merged` */
+    double reach;                    /* m, smaller one of the cores' radii about their centres */
 };
 
 void poly_list_free(struct poly_list *l);

@@ -38,7 +38,9 @@ void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct p
                             .va = (const double(*)[3])(st->world + s->vertex_first[a]),
                             .vb = (const double(*)[3])(st->world + s->vertex_first[b]),
                             .rest = radius + radius,
-                            .ell = radius};
+                            .ell = radius,
+                            .reach =
+                                poly_least(sim->bodies.reach[a], sim->bodies.reach[b]) - radius};
 }
 
 void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, size_t row,
@@ -227,12 +229,15 @@ static void come_apart(struct poly_block *block, int32_t i, size_t p)
     struct poly_touch t;
     enum poly_rule rule = rule_of(block);
     size_t row = (size_t)block->row[i];
-    double room = rows->room[row], margin = room - points->hold[p], path = 0;
-    uint8_t active = points->active[p];
-    if (!poly_touch_again(&t, pair_of(block, i), &f, poly_remembered(&f), &active, &margin, rule))
-        path = rule == POLY_MERGED && f.kind != POLY_EDGES
-                   ? -t.delta
-                   : poly_free_path(pair_of(block, i), &f, rule, room);
+    double room = rows->room[row], path;
+    if (rule == POLY_MERGED && f.kind != POLY_EDGES) {
+        double margin = room - points->hold[p];
+        uint8_t active = 0;
+        poly_touch_again(&t, pair_of(block, i), &f, poly_remembered(&f), &active, &margin, rule);
+        path = -t.delta;
+    } else {
+        path = poly_free_path(pair_of(block, i), &f, rule, room);
+    }
     struct poly_spring_law law = spring_law(sim);
     if (points->weight[p] > 0 && law.mu > 0 && law.kt > 0) {
         struct poly_motion m;

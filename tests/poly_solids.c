@@ -91,5 +91,7 @@ struct poly_pair solid_pair(const struct poly_shapes *shapes, size_t a, const st
                               .va = (const double(*)[3])pa->v,
                               .vb = (const double(*)[3])pb->v,
                               .rest = 2 * radius,
-                              .ell = radius};
+                              .ell = radius,
+                              .reach =
+                                  fmin(poly_shapes_reach(shapes, a), poly_shapes_reach(shapes, b))};
 }
