@@ -239,6 +239,18 @@ static int read_domain(struct tess *t)
     return 0;
 }
 
+static int check_faces(const struct tess *t)
+{
+    for (size_t i = 0; i < t->n_faces; i++) {
+        const struct face *f = &t->face[i];
+        if (f->cell[0] < 0 || (f->cell[1] < 0) != (f->domain >= 0))
+            BRC_FAIL(t->ctx, BRC_ERR_INPUT,
+                     "%s: face %zu is neither between two polyhedra nor on a face of the domain",
+                     t->path, i + 1);
+    }
+    return 0;
+}
+
 /* ---- geometry ------------------------------------------------------------------------------ */
 
 static void scale(struct tess *t, double metres)
@@ -334,13 +346,9 @@ static int make_domain(struct tess *t, struct brc_convex *domain)
     return code;
 }
 
-static int check_face(const struct tess *t, size_t i, const double n[3], const double middle[3])
+static int check_flat(const struct tess *t, size_t i, const double n[3], const double middle[3])
 {
     const struct face *f = &t->face[i];
-    if (f->cell[0] < 0 || (f->cell[1] < 0) != (f->domain >= 0))
-        BRC_FAIL(t->ctx, BRC_ERR_INPUT,
-                 "%s: face %zu is neither between two polyhedra nor on a face of the domain",
-                 t->path, i + 1);
     for (int32_t k = 0; k < f->n; k++) {
         double r[3];
         brc_sub(r, t->vertex[t->loop[f->first + (size_t)k]], middle);
@@ -360,7 +368,7 @@ static int add_facet(struct tess *t, struct brc_complex *c, size_t i, const int3
     double n[3], middle[3], out[3];
     measure_face(t, f, n, middle);
     brc_normalise(n, n);
-    BRC_TRY(check_face(t, i, n, middle));
+    BRC_TRY(check_flat(t, i, n, middle));
     int32_t low = f->cell[0], high = f->cell[1];
     if (high >= 0 && number_of[high] < number_of[low]) {
         low = f->cell[1];
@@ -440,6 +448,7 @@ static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_
     BRC_TRY(read_faces(t));
     BRC_TRY(read_polyhedra(t));
     BRC_TRY(read_domain(t));
+    BRC_TRY(check_faces(t));
     scale(t, metres);
     BRC_TRY(place_cells(t));
     BRC_TRY(make_domain(t, domain));

@@ -82,4 +82,9 @@ awk '$1 == "**polyhedron" { n = NR } n && NR == n + 3 { $3 = $4 } { print }' box
 refused "a face belongs to one polyhedron" wrong.yaml
 awk '$1 == "**vertex" { n = NR } n && NR == n + 1 { $1 = 2000000000 } { print }' box.tess >wrong.tess
 refused "wrong.tess:" wrong.yaml
+new=$(awk 'found { print $1 + 1; exit } $1 == "**face" { found = 1 }' box.tess)
+awk -v new="$new" '$1 == "**face" { n = NR } n && NR == n + 1 { $1 = new }
+     $1 == "**polyhedron" { n = 0; print new " 3 1 2 3\n 3 1 1 1\n 0 0 0 1\n 0 0 0 0 0" }
+     $1 == "z1" { z = NR } z && NR == z + 1 { $1++; $0 = $0 " " new } { print }' box.tess >wrong.tess
+refused "face $new is neither between two polyhedra nor" wrong.yaml
 [ $failures -eq 0 ]
