@@ -153,7 +153,8 @@ BRC_LANES_INLINE brc_lanes brc_lanes_mins(const brc_lanes a[BRC_LANES])
 /* Four rows of 3 values, one after the other, to and from lanes. */
 BRC_LANES_INLINE void brc_lanes_at3(brc_lanes r[3], double (*x)[3])
 {
-    brc_lanes a = brc_lanes_at(x[0]), b = brc_lanes_at(x[0] + 4), c = brc_lanes_at(x[0] + 8);
+    const double *v = (const double *)x; /* across the rows */
+    brc_lanes a = brc_lanes_at(v), b = brc_lanes_at(v + 4), c = brc_lanes_at(v + 8);
     brc_lanes ab = __builtin_shufflevector(a, b, 0, 1, 6, 7); /* x0 y0 x2 y2 */
     brc_lanes bc = __builtin_shufflevector(b, c, 0, 1, 6, 7); /* y1 z1 y3 z3 */
     brc_lanes ca = __builtin_shufflevector(a, c, 2, 3, 4, 5); /* z0 x1 z2 x3 */
@@ -167,9 +168,10 @@ BRC_LANES_INLINE void brc_lanes_put3(double (*x)[3], const brc_lanes r[3])
     brc_lanes ab = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6);
     brc_lanes ca = __builtin_shufflevector(r[2], r[0], 0, 5, 2, 7);
     brc_lanes bc = __builtin_shufflevector(r[1], r[2], 1, 5, 3, 7);
-    brc_lanes_put(x[0], __builtin_shufflevector(ab, ca, 0, 1, 4, 5));
-    brc_lanes_put(x[0] + 4, __builtin_shufflevector(bc, ab, 0, 1, 6, 7));
-    brc_lanes_put(x[0] + 8, __builtin_shufflevector(ca, bc, 2, 3, 6, 7));
+    double *v = (double *)x; /* across the rows */
+    brc_lanes_put(v, __builtin_shufflevector(ab, ca, 0, 1, 4, 5));
+    brc_lanes_put(v + 4, __builtin_shufflevector(bc, ab, 0, 1, 6, 7));
+    brc_lanes_put(v + 8, __builtin_shufflevector(ca, bc, 2, 3, 6, 7));
 }
 
 /* Four rows of 6 values, one after the other, to and from lanes. */
