@@ -35,6 +35,8 @@ SAN_SOURCES   := $(if $(filter san,$(CFG)),$(wildcard tests/san/*.c))$(if $(filt
 FUZZ_SOURCES  := $(if $(filter fuzz,$(CFG)),$(wildcard tests/fuzz/*.c))
 SAN_OBJECTS   := $(call objects,$(SAN_SOURCES))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SOURCES))
+HARD_SOURCES  := $(sort $(wildcard tests/hard/*.c))
+HARD_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(HARD_SOURCES))
 BENCH_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(BENCH_SOURCES))
 FUZZ_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SOURCES))
 PROGRAM       := $(if $(MAIN_SOURCES),$(BUILD)/breccia)
@@ -124,7 +126,7 @@ $(BUILD)/libaid.a: $(AID_OBJECTS) $(BUILD)/sources
 $(BUILD)/breccia: $(BUILD)/obj/common/main.c.o $(SAN_OBJECTS) $(BUILD)/libbreccia.a
 	@echo "link $@"
 	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) -o $@
-$(TEST_PROGRAMS) $(BENCH_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS) $(BUILD)/libaid.a $(BUILD)/libbreccia.a
+$(TEST_PROGRAMS) $(BENCH_PROGRAMS) $(HARD_PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.c.o $(SAN_OBJECTS) $(BUILD)/libaid.a $(BUILD)/libbreccia.a
 	@mkdir -p $(@D)
 	@echo "link $@"
 	@$(CXX) $(LINK_FLAGS) $^ $(DEPS_LIBS) $(DEPS_TEST_LIBS) -o $@
@@ -185,7 +187,7 @@ uninstall: ## removes what install has put there
 	@echo "removed breccia from $(DESTDIR)$(PREFIX)"
 
 # --- checking --------------------------------------------------------------------------------------
-.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench deps clean help
+.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench hard deps clean help
 RUN_ENV := CFG=$(CFG) BUILD=$(BUILD) BRECCIA=$(BUILD)/breccia JOBS=$(JOBS)
 check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
 	@$(RUN_ENV) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
@@ -209,6 +211,8 @@ check-paraview: all build/paraview/installed ## opens the frames with VTK's and 
 demo: all ## both models side by side: compression, tension, Brazilian test
 	@for case in $(sort $(wildcard cases/demo_*.yaml)); do $(BUILD)/breccia compare $$case --force && echo || exit 1; done
 	@echo "pictures:"; for picture in results/demo_*/*.png; do echo "  $$picture"; done
+hard: all $(HARD_PROGRAMS) ## hard cases of numerical stability, into docs/stability.md
+	@tests/hard/run $(HARD_PROGRAMS)
 bench: all $(BENCH_PROGRAMS) ## times of the hot loops
 	@for program in $(BENCH_PROGRAMS); do $$program || exit 1; done
 

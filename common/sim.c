@@ -119,7 +119,7 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
             sim->run.dt, sim->dt_limit, (long long)sim->step);
     if (sim->run.dt > 0)
         sim->dt = sim->run.dt;
-    else if (!(sim->dt_limit < HUGE_VAL))
+    else if (sim->dt == 0 && !(sim->dt_limit < HUGE_VAL))
         BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
                  "nothing is in contact yet, so there is no automatic time step: give run.dt");
     else if (sim->dt == 0 || sim->dt > sim->run.dt_margin * sim->dt_limit)

@@ -152,11 +152,11 @@ static void add_near_grains(struct springs *s, size_t row)
 static void add_near_platen(struct springs *s, size_t row)
 {
     const struct brc_contacts *c = &s->sim->platens;
+    const struct brc_bodies *b = &s->sim->bodies;
     const double *n = brc_sim_platen(s->sim, c->b[row])->n;
-    double d[3], x[3];
-    brc_copy(x, s->sim->bodies.x[c->a[row]]);
-    brc_sub(d, s->sim->bodies.x[c->b[row]], x);
-    brc_axpy(x, brc_dot(d, n), n);
+    double x[3];
+    brc_copy(x, b->x[c->a[row]]);
+    brc_axpy(x, -b->reach[c->a[row]], n);
     add_near(s, c, row, x, n);
 }
 

@@ -3,6 +3,7 @@
 
 #include "common/grid.h"
 #include "common/integrate.h"
+#include "common/job.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -196,6 +197,21 @@ void fixture_sim(struct fixture *f, const struct brc_model *model, const char *s
     fixture_set(f, brc_run_param_list, &r, run);
     int code = brc_sim_create(&f->ctx, &f->sim, model, params, &f->specimen, &t, &r);
     free(params);
+    CHECK_OK(&f->ctx, code);
+    f->has_sim = true;
+}
+
+void fixture_case(struct fixture *f, const struct brc_model *model, const char *path,
+                  const char *const *overrides, int n)
+{
+    struct brc_job job = {0};
+    drop_specimen(f);
+    CHECK_OK(&f->ctx, brc_job_read(&f->ctx, &job, path, overrides, n));
+    CHECK_OK(&f->ctx, brc_specimen_create(&f->ctx, &job.specimen, &f->specimen));
+    f->has_specimen = true;
+    int code = brc_sim_create(&f->ctx, &f->sim, model, brc_job_params(&job, model), &f->specimen,
+                              &job.test, &job.run);
+    brc_job_free(&job);
     CHECK_OK(&f->ctx, code);
     f->has_sim = true;
 }

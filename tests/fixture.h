@@ -46,6 +46,10 @@ void fixture_sim(struct fixture *f, const struct brc_model *model, const char *s
 /* The same without platens, in the dynamic regime, without damping of any kind but the model's. */
 void fixture_free_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                       const char *run);
+/* Specimen and simulation of a case file, as `breccia run` makes them, after n overrides
+ * "section.key=value". */
+void fixture_case(struct fixture *f, const struct brc_model *model, const char *path,
+                  const char *const *overrides, int n);
 void fixture_drop_sim(struct fixture *f);
 /* Every model that the tests run over: the registered ones, then null. */
 int fixture_n_models(void);

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hard cases of whole tests: what the strength depends on besides the rock. */
+#include "tests/hard/hard.h"
+
+enum { SAMPLES = 8 };
+
+/* Largest load of the case with the overrides, over the section. */
+static double strength(struct fixture *f, const char *name, const struct brc_model *model,
+                       const char *const *overrides, int n)
+{
+    hard_case(f, name, model, overrides, n);
+    while (!brc_rig_done(&f->sim))
+        fixture_steps(f, 1);
+    return f->sim.rig.force_peak / f->sim.rig.section;
+}
+
+/* Mean and its standard error of the change of the strength over the samples. */
+static void change_of(const double *value, const double *base, double change[2])
+{
+    double sum = 0, squares = 0;
+    for (int i = 0; i < SAMPLES; i++) {
+        double c = value[i] / base[i] - 1;
+        sum += c;
+        squares += c * c;
+    }
+    change[0] = sum / SAMPLES;
+    change[1] = sqrt((squares / SAMPLES - change[0] * change[0]) / (SAMPLES - 1));
+}
+
+/* The time step of the quasi-static regime is 1 and its masses are scaled: four times the mass is
+ * half the step. */
+static void loading_rate(void **state)
+{
+    struct fixture *f = *state;
+    const char *const changed[3] = {"test.target=0.003", "test.target=0.0015",
+                                    "run.mass_margin=4.8"};
+    for (int m = 0; m < brc_registry_count(); m++) {
+        const struct brc_model *model = brc_registry_at(m);
+        double value[3][SAMPLES], rate[2], step[2], mean = 0;
+        for (int i = 0; i < SAMPLES; i++)
+            for (int c = 0; c < 3; c++) {
+                char seed[64];
+                snprintf(seed, sizeof seed, "specimen.seed=%d", i + 1);
+                value[c][i] =
+                    strength(f, "loading_rate", model, (const char *const[]){seed, changed[c]}, 2);
+                mean += c == 0 ? value[c][i] / SAMPLES : 0;
+            }
+        change_of(value[1], value[0], rate);
+        change_of(value[2], value[0], step);
+        hard_row("loading_rate", model->name, fabs(rate[0]) < 0.03 && fabs(step[0]) < 0.03,
+                 "strength, mean of 8 specimens: changes by less than 3 % with the loading target "
+                 "or the time step halved",
+                 "%.1f MPa; target %+.2f +- %.2f %%, step %+.2f +- %.2f %%", 1e-6 * mean,
+                 100 * rate[0], 100 * rate[1], 100 * step[0], 100 * step[1]);
+    }
+}
+
+static void damping(void **state)
+{
+    struct fixture *f = *state;
+    const char *const alpha[4] = {"run.local_damping=0.2", "run.local_damping=0.4",
+                                  "run.local_damping=0.6", "run.local_damping=0.8"};
+    for (int m = 0; m < brc_registry_count(); m++) {
+        const struct brc_model *model = brc_registry_at(m);
+        double value[4], low = HUGE_VAL, high = 0;
+        for (int i = 0; i < 4; i++) {
+            value[i] = strength(f, "damping", model, &alpha[i], 1);
+            low = fmin(low, value[i]);
+            high = fmax(high, value[i]);
+        }
+        hard_row("damping", model->name, high / low < 1.05,
+                 "direct tension at alpha 0.2, 0.4, 0.6, 0.8 within 5 %",
+                 "%.3f, %.3f, %.3f, %.3f MPa", 1e-6 * value[0], 1e-6 * value[1], 1e-6 * value[2],
+                 1e-6 * value[3]);
+    }
+}
+
+/* The test with specimen and platens turned as one. */
+static double turned(struct fixture *f, const struct brc_model *model, const char *kind,
+                     const double q[4])
+{
+    const double zero[3] = {0, 0, 0};
+    char text[64];
+    snprintf(text, sizeof text, "run.damping=%s", kind);
+    hard_case(f, "damping", model, (const char *const[]){text}, 1);
+    for (size_t i = 0; i < f->sim.bodies.n_grains; i++)
+        fixture_velocity(f, i, zero, zero);
+    fixture_place(f, q, zero);
+    fixture_list(f);
+    while (!brc_rig_done(&f->sim))
+        fixture_steps(f, 1);
+    return f->sim.rig.force_peak / f->sim.rig.section;
+}
+
+static void rotated_specimen(void **state)
+{
+    struct fixture *f = *state;
+    const double none[4] = {1, 0, 0, 0}, turn[4] = {0.8, 0.36, 0.48, 0};
+    for (int m = 0; m < brc_registry_count(); m++) {
+        const struct brc_model *model = brc_registry_at(m);
+        double part[2];
+        for (int i = 0; i < 2; i++) {
+            const char *kind = i == 0 ? "cartesian" : "along_velocity";
+            part[i] = turned(f, model, kind, turn) / turned(f, model, kind, none) - 1;
+        }
+        hard_row("rotated specimen", model->name, fabs(part[0]) < 0.03 && fabs(part[1]) < 0.03,
+                 "direct tension, specimen and rig turned by 74 degrees: within 3 %",
+                 "change %+.2f %% with cartesian damping, %+.2f %% along the velocity",
+                 100 * part[0], 100 * part[1]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(damping),
+        FIXTURE_TEST(rotated_specimen),
+        FIXTURE_TEST(loading_rate),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) + hard_failed;
+}
