@@ -1,10 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _DEFAULT_SOURCE /* madvise */
 #include "fields.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
-enum { ALIGNMENT = 64, ROWS = 4 /* capacity is a multiple of it */ };
+enum {
+    ALIGNMENT = 64,
+    ROWS = 4,      /* capacity is a multiple of it */
+    WAY = 4096,    /* addresses that differ by a multiple of it share their place in a cache */
+    SKEW = 5 * 64, /* so columns begin this much apart modulo WAY */
+    LARGE_PAGE = 1 << 21 /* blocks of at least this size ask for pages of it */
+};
 
 size_t brc_type_size(enum brc_type type)
 {
@@ -40,17 +48,35 @@ void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset s
     *t = (struct brc_table){.name = name, .set = set, .columns = columns};
 }
 
-static void *aligned_block(struct brc_context *ctx, size_t rows, size_t row_size)
+static size_t round_up(size_t n, size_t unit)
 {
+    return (n + unit - 1) / unit * unit;
+}
+
+/* One block for all columns of cap rows, and where in it each begins. */
+static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t cap,
+                      size_t *offset)
+{
+    size_t bytes = 0, row_size = 0;
     void *block = NULL;
-    if (rows <= PTRDIFF_MAX / 2 / row_size) {
-        size_t bytes = (rows * row_size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-        block = aligned_alloc(ALIGNMENT, bytes > 0 ? bytes : ALIGNMENT);
+    for (int i = 0; i < t->set.n; i++)
+        row_size += brc_field_size(&t->set.fields[i]);
+    if (row_size == 0 || cap <= PTRDIFF_MAX / 2 / row_size) {
+        for (int i = 0; i < t->set.n; i++) {
+            size_t skew = cap * row_size < WAY ? 0 : (size_t)i * SKEW % WAY;
+            offset[i] = round_up(bytes, skew > 0 ? WAY : ALIGNMENT) + skew;
+            bytes = offset[i] + cap * brc_field_size(&t->set.fields[i]);
+        }
+        size_t unit = bytes < LARGE_PAGE ? ALIGNMENT : LARGE_PAGE;
+        bytes = round_up(bytes > 0 ? bytes : 1, unit);
+        block = aligned_alloc(unit, bytes);
+        if (block && unit == LARGE_PAGE)
+            (void)madvise(block, bytes, MADV_HUGEPAGE); /* a wish: pages may stay small */
     }
     if (!block)
         brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
                       "out of memory: %zu rows of %zu bytes; use fewer grains or a larger machine",
-                      rows, row_size);
+                      cap, row_size);
     return block;
 }
 
@@ -59,21 +85,17 @@ static void *aligned_block(struct brc_context *ctx, size_t rows, size_t row_size
 static int replace_columns(struct brc_context *ctx, struct brc_table *t, const size_t *from,
                            size_t n, size_t cap)
 {
-    size_t filled = (n + ROWS - 1) / ROWS * ROWS;
-    cap = (cap + ROWS - 1) / ROWS * ROWS;
-    void **fresh = brc_alloc(ctx, (size_t)t->set.n, sizeof *fresh);
-    if (!fresh)
+    size_t filled = round_up(n, ROWS);
+    cap = round_up(cap, ROWS);
+    size_t *offset = brc_alloc(ctx, (size_t)t->set.n, sizeof *offset);
+    char *block = offset ? allocate(ctx, t, cap, offset) : NULL;
+    if (!block) {
+        free(offset);
         return BRC_ERR_MEMORY;
+    }
     for (int i = 0; i < t->set.n; i++) {
         size_t size = brc_field_size(&t->set.fields[i]);
-        fresh[i] = aligned_block(ctx, cap, size);
-        if (!fresh[i]) {
-            for (int j = 0; j < i; j++)
-                free(fresh[j]);
-            free(fresh);
-            return BRC_ERR_MEMORY;
-        }
-        char *to = fresh[i];
+        char *to = block + offset[i];
         const char *old = brc_table_column(t, i);
         size_t kept = t->n < n ? t->n : n;
         if (!from && kept > 0)
@@ -89,11 +111,11 @@ static int replace_columns(struct brc_context *ctx, struct brc_table *t, const s
         if (from)
             memset(to + n * size, 0, (filled - n) * size);
     }
-    for (int i = 0; i < t->set.n; i++) {
-        free(brc_table_column(t, i));
-        *column_slot(t, i) = fresh[i];
-    }
-    free(fresh);
+    for (int i = 0; i < t->set.n; i++)
+        *column_slot(t, i) = block + offset[i];
+    free(offset);
+    free(t->block);
+    t->block = block;
     t->n = n;
     t->cap = cap;
     return 0;
@@ -122,10 +144,10 @@ int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t 
 
 void brc_table_free(struct brc_table *t)
 {
-    for (int i = 0; i < t->set.n; i++) {
-        free(brc_table_column(t, i));
+    free(t->block);
+    t->block = NULL;
+    for (int i = 0; i < t->set.n; i++)
         *column_slot(t, i) = NULL;
-    }
     t->n = t->cap = 0;
 }
 

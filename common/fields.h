@@ -63,6 +63,7 @@ struct brc_table {
     struct brc_fieldset set;
     void *columns; /* the owner struct: column pointers at the fields' offsets */
     size_t n, cap; /* rows in use, rows allocated */
+    void *block;   /* memory of all columns */
 };
 
 /* Binds a table to a caller-owned struct of column pointers (all NULL). */

@@ -30,19 +30,16 @@ enum { TIDY_STEPS = 100 };
 /* growth of the largest sum k / m that calls for a new estimate */
 static const double LIMIT_GROWTH = 1.05;
 
-/* Forces and moments on every body: rows in ascending order, pairs before platens, so that the sums
- * depend on global numbers only. */
-static void gather_rows(const struct brc_contacts *c, size_t body, double f[3], double t[3])
+/* Adds the forces and moments of all rows to the bodies, row after row: for each body that is the
+ * ascending order of its rows, so that the sums depend on global numbers only. */
+static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3])
 {
-    for (size_t r = c->adjacent_first[body]; r < c->adjacent_first[body + 1]; r++) {
-        uint32_t row = c->adjacent[r] / 2;
-        if (c->adjacent[r] % 2) {
-            brc_axpy(f, 1, c->f[row]);
-            brc_axpy(t, 1, c->tb[row]);
-        } else {
-            brc_axpy(f, -1, c->f[row]);
-            brc_axpy(t, 1, c->ta[row]);
-        }
+    for (size_t row = 0; row < c->n; row++) {
+        double *fa = f[c->a[row]], *fb = f[c->b[row]], *ta = t[c->a[row]], *tb = t[c->b[row]];
+        brc_sub(fa, fa, c->f[row]);
+        brc_add(fb, fb, c->f[row]);
+        brc_add(ta, ta, c->ta[row]);
+        brc_add(tb, tb, c->tb[row]);
     }
 }
 
@@ -52,9 +49,9 @@ static void gather(struct brc_sim *sim)
     for (size_t i = 0; i < b->n; i++) {
         brc_scale(b->f[i], sim->run.gravity, b->true_mass[i]);
         brc_set(b->t[i], 0, 0, 0);
-        gather_rows(&sim->pairs, i, b->f[i], b->t[i]);
-        gather_rows(&sim->platens, i, b->f[i], b->t[i]);
     }
+    add_rows(&sim->pairs, b->f, b->t);
+    add_rows(&sim->platens, b->f, b->t);
 }
 
 static int update_candidates(struct brc_sim *sim)
