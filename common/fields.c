@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#define _DEFAULT_SOURCE /* madvise */
+#define _DEFAULT_SOURCE /* for madvise; NOLINT(bugprone-reserved-identifier) */
 #include "fields.h"
 
 #include <stdlib.h>
