@@ -6,16 +6,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Settings of the models here: elastic unless asked to break, no viscosity. Size of a grain 1 cm;
- * modulus is what makes a force of a strain, for tolerances. */
+/* Settings of the models here: no viscosity, grains of 1 cm; modulus makes forces of strains. */
 struct subject {
     const char *name;
     const char *elastic;
     const char *breaking;
     double modulus;
-    /* part of the step limit at which the energy stays for 1500 steps: just under it for linear
-     * springs; springs that begin and end within a step put energy into an undamped pack */
-    double stable_part;
+    double stable_part; /* of the step limit; less where springs begin and end within a step */
 };
 static const struct subject SUBJECTS[] = {
     {"polyhedra", "radius: 1 mm; kn: 1e8 N/m; kt: 1e8 N/m; bn: 20 GPa; bt: 20 GPa; gn: 0 1/s",
