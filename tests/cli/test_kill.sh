@@ -84,6 +84,8 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
     broken=$(($(wc -l <"$model/events.csv") - 1))
     echo "$model: $took ms, $broken breaks, $kills kills, $resumed resumed past the start"
     [ $broken -gt 0 ] || fail "$model: nothing broke"
+    # under sanitizers most of a run is its start
+    case ${BUILD:-build} in */san) continue ;; esac
     [ $resumed -gt 0 ] || fail "$model: no run was resumed past its start"
 done
 [ $failures -eq 0 ]

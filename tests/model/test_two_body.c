@@ -378,6 +378,13 @@ static void the_step_meets_an_impact(void **state)
     struct impact r = impact(f, v, BRC_PI * sqrt(effective_mass(f) / K));
     assert_true(r.largest_f > 0);
     CHECK_NEAR(r.e, 1, 0.1, 0);
+    /* and a step that was too long falls when they touch */
+    build_polyhedra(f, "mu: 0; gn: 0 1/s", 0);
+    f->sim.dt = 0.9 * limit;
+    throw_at(f, v);
+    for (int i = 0; i < 1000 && fixture_largest_force(f) == 0; i++)
+        fixture_steps(f, 1);
+    CHECK_BETWEEN(f->sim.dt, 0.2 * limit, 0.51 * limit);
 }
 
 int main(void)
