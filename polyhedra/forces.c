@@ -3,9 +3,6 @@
  * be computed goes into work lists, and kernels.c does it four at a time. */
 #include "step.h"
 
-/* rows whose points are fetched ahead */
-enum { FETCH_AHEAD = 4 };
-
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -293,33 +290,6 @@ static void begin_segment(struct poly_block *block, int32_t i)
     block->segment[block->n_segments] = (struct poly_segment){.row = i, .slot = block->n_slots};
 }
 
-/* The points of a row lie anywhere in their columns: asks for them ahead of their use. */
-static void fetch_points(const struct poly_block *block, int32_t i)
-{
-    const struct brc_contacts *c = &block->sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
-    const struct poly_points *points = c->point_columns;
-    if (i >= block->n_rows)
-        return;
-    size_t row = (size_t)block->row[i], first = (size_t)c->p0[row];
-    size_t end = first + (size_t)rows->awake[row];
-    __builtin_prefetch(&points->kind[first]);
-    __builtin_prefetch(&points->active[first]);
-    for (size_t p = first; p < end; p += 4)
-        __builtin_prefetch(&points->near[p]);
-    for (size_t p = first; p < end; p += 8) {
-        __builtin_prefetch(&points->i[p]);
-        __builtin_prefetch(&points->j[p]);
-        __builtin_prefetch(&points->sleep[p]);
-        __builtin_prefetch(&points->hold[p]);
-        __builtin_prefetch(&points->weight[p]);
-    }
-    for (size_t p = first; p < end; p += 2) {
-        __builtin_prefetch(&points->n[p]);
-        __builtin_prefetch(&points->xi[p]);
-    }
-}
-
 /* Lists the points of row i of the block that may touch. A row is never split, unless it fills all
  * slots by itself: its sums do not depend on the rows around it. */
 static void list_points(struct poly_block *block, int32_t i)
@@ -476,16 +446,12 @@ void poly_forces(struct brc_sim *sim, void *state)
     open_block(block, sim, st);
     for (size_t row = 0; row < sim->pairs.n;) {
         row = take_rows(block, row);
-        for (int32_t i = 0; i < FETCH_AHEAD; i++)
-            fetch_points(block, i);
         st->kernels.motion(block);
         for (int32_t i = 0; i < block->n_rows; i++)
             if (prepare_row(block, i) != 0)
                 return;
-        for (int32_t i = 0; i < block->n_rows; i++) {
-            fetch_points(block, i + FETCH_AHEAD);
+        for (int32_t i = 0; i < block->n_rows; i++)
             list_points(block, i);
-        }
         work_off(block);
         st->kernels.finish(block);
         for (int32_t i = 0; i < block->n_rows; i++)
