@@ -1,56 +1,42 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "compare.h"
 
-#include "comm.h"
+#include "child.h"
 #include "plot.h"
 
-#include <errno.h>
 #include <math.h>
-#include <poll.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 enum { PATH_SIZE = 4096, MAX_RUNS = BRC_PROGRESS_MAX_RUNS };
-enum { STOP_MS = 300 }; /* between two looks for a signal */
 
-/* What a child leaves for its parent. */
-struct outcome {
-    int code;
-    char message[1024];
-    struct brc_summary summary;
-};
+struct compare;
 
-struct child {
+/* One model's run. */
+struct model_run {
+    const struct compare *compare;
     const struct brc_model *model;
     char dir[PATH_SIZE];
-    pid_t process; /* 0: not started */
-    int pipe;      /* reports; -1: none */
-    FILE *result;  /* an outcome */
-    struct outcome outcome;
 };
 
 struct compare {
     struct brc_context *ctx;
     const struct brc_compare_order *order;
     struct brc_progress progress;
-    int n, n_started, n_running;
-    struct child child[MAX_RUNS];
+    int n, n_started;
+    struct model_run run[MAX_RUNS];
+    struct brc_child child[MAX_RUNS];
 };
 
 /* ---- the models ---------------------------------------------------------------------------- */
 
 static int add_model(struct compare *c, const struct brc_model *model)
 {
-    struct child *child = &c->child[c->n];
-    if (c->n == MAX_RUNS)
-        BRC_FAIL(c->ctx, BRC_ERR_INPUT, "more than %d models to compare; name fewer in 'models'",
-                 MAX_RUNS);
-    child->model = model;
-    child->pipe = -1;
-    if (snprintf(child->dir, PATH_SIZE, "%s/%s", c->order->dir, model->name) >= PATH_SIZE)
+    struct model_run *run = &c->run[c->n];
+    run->compare = c;
+    run->model = model;
+    snprintf(c->child[c->n].name, sizeof c->child[c->n].name, "%s", model->name);
+    if (snprintf(run->dir, PATH_SIZE, "%s/%s", c->order->dir, model->name) >= PATH_SIZE)
         BRC_FAIL(c->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", c->order->dir);
     c->n++;
     return 0;
@@ -58,14 +44,12 @@ static int add_model(struct compare *c, const struct brc_model *model)
 
 static int choose_models(struct compare *c)
 {
-    const struct brc_case *file = &c->order->job->file;
-    const struct brc_model *model;
-    for (size_t i = 0; i < file->n_models; i++) {
-        BRC_TRY(brc_job_model(c->ctx, file->models[i], &model));
-        BRC_TRY(add_model(c, model));
-    }
-    for (int i = 0; file->n_models == 0 && i < brc_registry_count(); i++)
-        BRC_TRY(add_model(c, brc_registry_at(i)));
+    const struct brc_model *model[MAX_RUNS];
+    int n;
+    BRC_TRY(brc_job_models(c->ctx, c->order->job, model, MAX_RUNS, &n));
+    brc_children_init(c->child, n);
+    for (int i = 0; i < n; i++)
+        BRC_TRY(add_model(c, model[i]));
     return 0;
 }
 
@@ -76,7 +60,7 @@ static int try_models(const struct compare *c)
     const struct brc_job *job = c->order->job;
     for (int i = 0; i < c->n; i++) {
         struct brc_sim sim;
-        const struct brc_model *model = c->child[i].model;
+        const struct brc_model *model = c->run[i].model;
         BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_job_params(job, model), c->order->specimen,
                                &job->test, &job->run));
         brc_sim_free(&sim);
@@ -86,143 +70,37 @@ static int try_models(const struct compare *c)
 
 /* ---- children ------------------------------------------------------------------------------ */
 
-/* The child's whole life. It never returns; the parent reads the outcome. */
-static void run_child(const struct compare *c, const struct child *child)
+static int run_model(struct brc_context *ctx, const void *user, struct brc_progress *progress,
+                     struct brc_summary *out)
 {
-    struct brc_context ctx = {.quiet = c->ctx->quiet};
-    struct brc_progress progress;
-    struct outcome outcome = {0};
-    brc_progress_begin_pipe(&progress, child->pipe);
+    const struct model_run *run = user;
+    const struct brc_compare_order *o = run->compare->order;
     const struct brc_run_order order = {
-        .job = c->order->job,
-        .model = child->model,
-        .specimen = c->order->specimen,
-        .dir = child->dir,
-        .is_resumed = c->order->is_resumed && brc_run_has_begun(child->dir),
-        .is_forced = c->order->is_forced,
-        .progress = &progress,
+        .job = o->job,
+        .model = run->model,
+        .specimen = o->specimen,
+        .dir = run->dir,
+        .is_resumed = o->is_resumed && brc_run_has_begun(run->dir),
+        .is_forced = o->is_forced,
+        .progress = progress,
     };
-    outcome.code = brc_comm_start(&ctx);
-    if (outcome.code == 0)
-        outcome.code = brc_run(&ctx, &order, &outcome.summary);
-    memcpy(outcome.message, ctx.message, sizeof outcome.message);
-    bool is_told =
-        fwrite(&outcome, sizeof outcome, 1, child->result) == 1 && fflush(child->result) == 0;
-    brc_comm_end();
-    _exit(is_told ? 0 : 1);
-}
-
-static int start_child(struct compare *c, struct child *child)
-{
-    int ends[2];
-    child->result = tmpfile();
-    if (!child->result || pipe(ends) != 0)
-        BRC_FAIL(c->ctx, BRC_ERR_IO, "cannot start a run of %s: %s", child->model->name,
-                 strerror(errno));
-    fflush(NULL);
-    child->process = fork();
-    if (child->process < 0)
-        BRC_FAIL(c->ctx, BRC_ERR_IO, "cannot start a run of %s: %s", child->model->name,
-                 strerror(errno));
-    if (child->process == 0) {
-        close(ends[0]);
-        for (int i = 0; i < c->n; i++)
-            if (c->child[i].pipe >= 0)
-                close(c->child[i].pipe);
-        child->pipe = ends[1];
-        run_child(c, child);
-    }
-    close(ends[1]);
-    child->pipe = ends[0];
-    c->n_running++;
-    return 0;
-}
-
-/* The child has closed its pipe: takes its exit and its outcome. */
-static int end_child(struct compare *c, struct child *child)
-{
-    int status;
-    close(child->pipe);
-    child->pipe = -1;
-    while (waitpid(child->process, &status, 0) < 0)
-        if (errno != EINTR)
-            BRC_FAIL(c->ctx, BRC_ERR_IO, "lost the run of %s: %s", child->model->name,
-                     strerror(errno));
-    c->n_running--;
-    rewind(child->result);
-    bool is_told = WIFEXITED(status) && WEXITSTATUS(status) == 0 &&
-                   fread(&child->outcome, sizeof child->outcome, 1, child->result) == 1;
-    fclose(child->result);
-    child->result = NULL;
-    if (is_told)
-        return 0;
-    child->outcome = (struct outcome){.code = BRC_ERR_INTERNAL};
-    if (WIFSIGNALED(status))
-        snprintf(child->outcome.message, sizeof child->outcome.message,
-                 "its process was ended by signal %d", WTERMSIG(status));
-    else
-        snprintf(child->outcome.message, sizeof child->outcome.message,
-                 "its process ended without a result");
-    return 0;
-}
-
-static void stop_children(const struct compare *c)
-{
-    for (int i = 0; i < c->n; i++)
-        if (c->child[i].pipe >= 0)
-            kill(c->child[i].process, SIGTERM);
-}
-
-/* Takes one report; false at the end of the pipe. */
-static bool read_report(struct compare *c, int i)
-{
-    struct brc_progress_report report;
-    ssize_t n;
-    do
-        n = read(c->child[i].pipe, &report, sizeof report);
-    while (n < 0 && errno == EINTR);
-    if (n != (ssize_t)sizeof report)
-        return false;
-    brc_progress_update(&c->progress, i, &report);
-    return true;
-}
-
-/* Waits for reports of the children that run. */
-static int listen(struct compare *c)
-{
-    struct pollfd ready[MAX_RUNS];
-    int index[MAX_RUNS], n = 0;
-    for (int i = 0; i < c->n; i++) {
-        if (c->child[i].pipe < 0)
-            continue;
-        ready[n] = (struct pollfd){.fd = c->child[i].pipe, .events = POLLIN};
-        index[n++] = i;
-    }
-    int n_ready = poll(ready, (nfds_t)n, STOP_MS);
-    if (n_ready < 0 && errno != EINTR)
-        BRC_FAIL(c->ctx, BRC_ERR_IO, "lost the runs: %s", strerror(errno));
-    if (brc_run_is_stopped())
-        stop_children(c);
-    if (n_ready < 0)
-        return 0;
-    for (int k = 0; k < n; k++)
-        if (ready[k].revents != 0 && !read_report(c, index[k]))
-            BRC_TRY(end_child(c, &c->child[index[k]]));
-    return 0;
+    return brc_run(ctx, &order, out);
 }
 
 static int run_all(struct compare *c)
 {
-    long n_processors = sysconf(_SC_NPROCESSORS_ONLN);
-    int at_once = n_processors > 1 ? (int)n_processors : 1;
-    while (c->n_started < c->n || c->n_running > 0) {
+    int at_once = brc_children_at_once(), n_running;
+    while ((n_running = brc_children_running(c->child, c->n)) > 0 || c->n_started < c->n) {
         bool may_start = c->n_started < c->n && !brc_run_is_stopped();
-        if (may_start && c->n_running < at_once)
-            BRC_TRY(start_child(c, &c->child[c->n_started++]));
-        else if (c->n_running > 0)
-            BRC_TRY(listen(c));
-        else
+        if (may_start && n_running < at_once) {
+            int i = c->n_started++;
+            const struct brc_child_work work = {run_model, &c->run[i]};
+            BRC_TRY(brc_children_start(c->ctx, c->child, c->n, i, &work));
+        } else if (n_running > 0) {
+            BRC_TRY(brc_children_listen(c->ctx, c->child, c->n, &c->progress));
+        } else {
             break;
+        }
     }
     return 0;
 }
@@ -230,9 +108,9 @@ static int run_all(struct compare *c)
 /* The first failure counts; an interruption counts less than a failure. */
 static int judge(struct compare *c)
 {
-    const struct child *worst = NULL;
+    const struct brc_child *worst = NULL;
     for (int i = 0; i < c->n; i++) {
-        const struct child *child = &c->child[i];
+        const struct brc_child *child = &c->child[i];
         if (child->outcome.code == 0)
             continue;
         if (!worst || (worst->outcome.code == BRC_ERR_INTERRUPTED &&
@@ -240,8 +118,7 @@ static int judge(struct compare *c)
             worst = child;
     }
     if (worst && worst->outcome.code != BRC_ERR_INTERRUPTED)
-        BRC_FAIL(c->ctx, worst->outcome.code, "%s: %.900s", worst->model->name,
-                 worst->outcome.message);
+        BRC_FAIL(c->ctx, worst->outcome.code, "%s: %.900s", worst->name, worst->outcome.message);
     if (worst || c->n_started < c->n)
         BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; the states are saved in %s",
                  c->order->dir);
@@ -277,7 +154,7 @@ static int draw(struct compare *c)
     struct brc_plot_runs runs = {
         .title = job->file.head.title, .test = (enum brc_test)job->test.kind, .n = c->n};
     for (int i = 0; i < c->n; i++)
-        runs.label[i] = runs.folder[i] = c->child[i].model->name;
+        runs.label[i] = runs.folder[i] = c->run[i].model->name;
     return job->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &job->output) : 0;
 }
 
@@ -291,9 +168,9 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
     c->order = order;
     int code = choose_models(c);
     for (int i = 0; i < c->n && code == 0; i++) {
-        bool is_resumed = order->is_resumed && brc_run_has_begun(c->child[i].dir);
-        code = brc_run_check_folder(ctx, c->child[i].dir, is_resumed, order->is_forced);
-        label[i] = c->child[i].model->name;
+        bool is_resumed = order->is_resumed && brc_run_has_begun(c->run[i].dir);
+        code = brc_run_check_folder(ctx, c->run[i].dir, is_resumed, order->is_forced);
+        label[i] = c->run[i].model->name;
     }
     if (code == 0)
         code = try_models(c);
@@ -305,7 +182,7 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
         brc_progress_end(&c->progress);
     }
     if (code != 0)
-        stop_children(c);
+        brc_children_stop(c->child, c->n);
     if (code == 0)
         code = judge(c);
     if (code == 0)

@@ -128,6 +128,22 @@ int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_mo
     BRC_FAIL(ctx, BRC_ERR_INPUT, "unknown model '%.60s'; there are: %s", name, all);
 }
 
+int brc_job_models(struct brc_context *ctx, const struct brc_job *job,
+                   const struct brc_model **model, int cap, int *n)
+{
+    int n_named = (int)job->file.n_models;
+    *n = n_named > 0 ? n_named : brc_registry_count();
+    if (*n > cap)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%d models to compare, %d at most; name fewer in 'models'", *n,
+                 cap);
+    for (int i = 0; i < *n; i++) {
+        model[i] = brc_registry_at(i);
+        if (n_named > 0)
+            BRC_TRY(brc_job_model(ctx, job->file.models[i], &model[i]));
+    }
+    return 0;
+}
+
 const void *brc_job_params(const struct brc_job *job, const struct brc_model *model)
 {
     for (int i = 0; i < job->n_models; i++)

@@ -30,6 +30,9 @@ int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *name
 void brc_job_free(struct brc_job *job);
 /* A registered model by name; an unknown one is an error that lists all. */
 int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model);
+/* The models that a case compares: those that it names, else all; at most cap. */
+int brc_job_models(struct brc_context *ctx, const struct brc_job *job,
+                   const struct brc_model **model, int cap, int *n);
 /* The filled parameters of a model. */
 const void *brc_job_params(const struct brc_job *job, const struct brc_model *model);
 /* All parameters that a run's states depend on, one "section.key = value" a line; allocated, to be

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot.h"
 
+#include "gnuplot.h"
 #include "vec.h"
 
-#include <errno.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 enum { PATH_SIZE = 4096, N_SHADES = 5 };
 
@@ -24,40 +21,6 @@ struct broken_columns {
 };
 static const struct brc_field broken_fields[] = {BRC_BROKEN_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
-
-static int open_script(struct brc_context *ctx, const char *dir, const char *name, FILE **out)
-{
-    char path[PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
-    *out = fopen(path, "w");
-    if (!*out)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
-    return 0;
-}
-
-static int close_script(struct brc_context *ctx, const char *dir, const char *name, FILE *out)
-{
-    bool good = !ferror(out);
-    good = fclose(out) == 0 && good;
-    if (!good)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s/%s; is the disk full?", dir, name);
-    return 0;
-}
-
-/* Text between double quotes of gnuplot, with its markup switched off. */
-static void put_quoted(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (; *text; text++) {
-        if (strchr("\"\\", *text))
-            fputc('\\', out);
-        else if (strchr("_^{}@&~", *text))
-            fputs("\\\\", out);
-        fputc(*text, out);
-    }
-    fputc('"', out);
-}
 
 /* ---- broken area --------------------------------------------------------------------------- */
 
@@ -369,7 +332,7 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
     struct cracks c;
     FILE *out;
     BRC_TRY(classify(ctx, sim, output, &c));
-    int code = open_script(ctx, dir, "cracks.plot", &out);
+    int code = brc_gnuplot_open(ctx, dir, "cracks.plot", &out);
     if (code == 0) {
         fprintf(out,
                 "# Broken facets of a run of breccia, one block a mode and shade; lengths in mm.\n"
@@ -380,7 +343,7 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
         put_axes(out, &s->domain, &v);
         put_legend(out, &c);
         put_splot(out, used);
-        code = close_script(ctx, dir, "cracks.plot", out);
+        code = brc_gnuplot_close(ctx, dir, "cracks.plot", out);
     }
     free(c.mode);
     return code;
@@ -407,7 +370,7 @@ static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const c
 {
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s", runs->folder[i], name);
-    put_quoted(out, path);
+    brc_gnuplot_quoted(out, path);
 }
 
 /* Stress against strain: along the load, and across it to the left. */
@@ -424,7 +387,7 @@ static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
                 " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines lw 2.4 "
                 "lc rgb '%s' title ",
                 brazilian ? "strain" : "strain_axial", run_colour(i));
-        put_quoted(out, runs->label[i]);
+        brc_gnuplot_quoted(out, runs->label[i]);
         if (brazilian)
             continue;
         fputs(", \\\n  ", out);
@@ -460,7 +423,7 @@ static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
                     brc_mode_name((enum brc_mode)mode), dash[mode], run_colour(i), i, mode);
             snprintf(label, sizeof label, "%s, %s", runs->label[i],
                      brc_mode_name((enum brc_mode)mode));
-            put_quoted(out, label);
+            brc_gnuplot_quoted(out, label);
             fputs(" : '')", out);
         }
     fputc('\n', out);
@@ -469,108 +432,49 @@ static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
 static int write_curves(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs)
 {
     FILE *out;
-    BRC_TRY(open_script(ctx, dir, "curves.gp", &out));
+    BRC_TRY(brc_gnuplot_open(ctx, dir, "curves.gp", &out));
     put_head(out, "curves", 1500, 640, 13);
     fputs("set datafile separator ','\nset grid lc rgb '#dddddd' lt 1\nset border 3\n"
           "set tics nomirror\nset key outside top center horizontal\n"
           "set multiplot layout 1,2 title ",
           out);
-    put_quoted(out, runs->title);
+    brc_gnuplot_quoted(out, runs->title);
     fputs(" font ',15'\n", out);
     put_stress_panel(out, runs);
     put_broken_panel(out, runs);
     fputs("unset multiplot\n", out);
-    return close_script(ctx, dir, "curves.gp", out);
+    return brc_gnuplot_close(ctx, dir, "curves.gp", out);
 }
 
 static int write_pictures(struct brc_context *ctx, const char *dir,
                           const struct brc_plot_runs *runs, int height)
 {
     FILE *out;
-    BRC_TRY(open_script(ctx, dir, "cracks.gp", &out));
+    BRC_TRY(brc_gnuplot_open(ctx, dir, "cracks.gp", &out));
     put_head(out, "cracks", (int)(PANEL_WIDTH * height * runs->n), height, height / 70);
     fputs("set pm3d depthorder border lc rgb '#202020' lw 0.4\nset border 0\n"
           "panel_scale = 1.0 # of the specimen in its panel\nset multiplot title ",
           out);
-    put_quoted(out, runs->title);
+    brc_gnuplot_quoted(out, runs->title);
     fputs("\n", out);
     for (int i = 0; i < runs->n; i++) {
         fprintf(out, "panel_left = %.4f\nset origin %.4f,0.11\nset size %.4f,%.4f\nset label 9 ",
                 (i + 0.24) / runs->n, (double)i / runs->n, 1.0 / runs->n, PANEL_HEIGHT);
-        put_quoted(out, runs->label[i]);
+        brc_gnuplot_quoted(out, runs->label[i]);
         fprintf(out, " at screen %.4f,0.935 center font ',%d'\nload ", (i + 0.5) / runs->n,
                 height / 60);
         put_file(out, runs, i, "cracks.plot");
         fputc('\n', out);
     }
     fputs("unset multiplot\n", out);
-    return close_script(ctx, dir, "cracks.gp", out);
-}
-
-/* Runs gnuplot in the folder; *status is its exit status, 127 when it is not installed. */
-static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *script, int *status)
-{
-    pid_t child = fork();
-    if (child < 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot start gnuplot: %s", strerror(errno));
-    if (child == 0) {
-        sigset_t none; /* the run may hold back signals */
-        sigemptyset(&none);
-        sigprocmask(SIG_SETMASK, &none, NULL);
-        if (chdir(dir) == 0 && freopen("gnuplot.log", "a", stderr))
-            execlp("gnuplot", "gnuplot", script, (char *)NULL);
-        _exit(127);
-    }
-    int how;
-    while (waitpid(child, &how, 0) < 0)
-        if (errno != EINTR)
-            BRC_FAIL(ctx, BRC_ERR_IO, "lost gnuplot: %s", strerror(errno));
-    *status = WIFEXITED(how) ? WEXITSTATUS(how) : 1;
-    return 0;
-}
-
-/* gnuplot does not tell when the disk is full: a whole picture ends with the mark of PNG. */
-static int check_picture(struct brc_context *ctx, const char *dir, const char *name)
-{
-    static const char mark[8] = {'I', 'E', 'N', 'D', '\xae', 'B', '\x60', '\x82'};
-    char path[PATH_SIZE + 16], end[8] = "";
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *file = fopen(path, "rb");
-    if (file && fseek(file, -(long)sizeof end, SEEK_END) == 0 &&
-        fread(end, sizeof end, 1, file) < 1)
-        end[0] = '\0';
-    if (file)
-        fclose(file);
-    if (memcmp(end, mark, sizeof mark) != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO,
-                 "gnuplot left no whole picture %s: is the disk full? All other results are there; "
-                 "make room, then run gnuplot in that folder on its .gp file",
-                 path);
-    return 0;
+    return brc_gnuplot_close(ctx, dir, "cracks.gp", out);
 }
 
 int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,
                   const struct brc_output_params *output)
 {
-    static const char *const script[] = {"curves.gp", "cracks.gp"};
-    static const char *const picture[] = {"curves.png", "cracks.png"};
+    static const char *const picture[] = {"curves", "cracks"};
     BRC_TRY(write_curves(ctx, dir, runs));
     BRC_TRY(write_pictures(ctx, dir, runs, output->picture_height));
-    for (int i = 0; i < 2; i++) {
-        int status = 0;
-        BRC_TRY(run_gnuplot(ctx, dir, script[i], &status));
-        if (status == 127) {
-            brc_log(ctx,
-                    "gnuplot is not installed, so pictures are left out; the scripts are "
-                    "%s/curves.gp and cracks.gp",
-                    dir);
-            return 0;
-        }
-        if (status != 0)
-            brc_log(ctx, "gnuplot failed on %s/%s; its messages are in gnuplot.log there", dir,
-                    script[i]);
-        else
-            BRC_TRY(check_picture(ctx, dir, picture[i]));
-    }
-    return 0;
+    return brc_gnuplot_draw(ctx, dir, picture, 2);
 }

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gnuplot.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096 };
+
+int brc_gnuplot_open(struct brc_context *ctx, const char *dir, const char *name, FILE **out)
+{
+    char path[PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
+    *out = fopen(path, "w");
+    if (!*out)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    return 0;
+}
+
+int brc_gnuplot_close(struct brc_context *ctx, const char *dir, const char *name, FILE *out)
+{
+    bool good = !ferror(out);
+    good = fclose(out) == 0 && good;
+    if (!good)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s/%s; is the disk full?", dir, name);
+    return 0;
+}
+
+void brc_gnuplot_quoted(FILE *out, const char *text)
+{
+    fputc('"', out);
+    for (; *text; text++) {
+        if (strchr("\"\\", *text))
+            fputc('\\', out);
+        else if (strchr("_^{}@&~", *text))
+            fputs("\\\\", out);
+        fputc(*text, out);
+    }
+    fputc('"', out);
+}
+
+/* Runs gnuplot in the folder; *status is its exit status, 127 when it is not installed. */
+static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *script, int *status)
+{
+    pid_t child = fork();
+    if (child < 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot start gnuplot: %s", strerror(errno));
+    if (child == 0) {
+        sigset_t none; /* the run may hold back signals */
+        sigemptyset(&none);
+        sigprocmask(SIG_SETMASK, &none, NULL);
+        if (chdir(dir) == 0 && freopen("gnuplot.log", "a", stderr))
+            execlp("gnuplot", "gnuplot", script, (char *)NULL);
+        _exit(127);
+    }
+    int how;
+    while (waitpid(child, &how, 0) < 0)
+        if (errno != EINTR)
+            BRC_FAIL(ctx, BRC_ERR_IO, "lost gnuplot: %s", strerror(errno));
+    *status = WIFEXITED(how) ? WEXITSTATUS(how) : 1;
+    return 0;
+}
+
+/* gnuplot does not tell when the disk is full: a whole picture ends with the mark of PNG. */
+static int check_picture(struct brc_context *ctx, const char *dir, const char *name)
+{
+    static const char mark[8] = {'I', 'E', 'N', 'D', '\xae', 'B', '\x60', '\x82'};
+    char path[PATH_SIZE + 16], end[8] = "";
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *file = fopen(path, "rb");
+    if (file && fseek(file, -(long)sizeof end, SEEK_END) == 0 &&
+        fread(end, sizeof end, 1, file) < 1)
+        end[0] = '\0';
+    if (file)
+        fclose(file);
+    if (memcmp(end, mark, sizeof mark) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "gnuplot left no whole picture %s: is the disk full? All other results are there; "
+                 "make room, then run gnuplot in that folder on its .gp file",
+                 path);
+    return 0;
+}
+
+int brc_gnuplot_draw(struct brc_context *ctx, const char *dir, const char *const *picture, int n)
+{
+    for (int i = 0; i < n; i++) {
+        char script[64], image[64];
+        int status = 0;
+        snprintf(script, sizeof script, "%s.gp", picture[i]);
+        snprintf(image, sizeof image, "%s.png", picture[i]);
+        BRC_TRY(run_gnuplot(ctx, dir, script, &status));
+        if (status == 127) {
+            brc_log(ctx,
+                    "gnuplot is not installed, so pictures are left out; the scripts are %s/*.gp",
+                    dir);
+            return 0;
+        }
+        if (status != 0)
+            brc_log(ctx, "gnuplot failed on %s/%s; its messages are in gnuplot.log there", dir,
+                    script);
+        else
+            BRC_TRY(check_picture(ctx, dir, image));
+    }
+    return 0;
+}
