@@ -64,94 +64,37 @@ static void turn_isotropic(double q[4], const double w[3], double dt)
     quat_normalise(q);
 }
 
+/* Orientations, in the order of the bodies; before their spin is read for anything else. */
+static void drift_orientations(struct brc_sim *sim)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        if (is_isotropic(b->inertia[i]))
+            turn_isotropic(b->q[i], b->w[i], sim->dt);
+        else
+            brc_integrate_rotate(b->q[i], b->w[i], b->l[i], b->inertia[i], sim->dt);
+    }
+}
+
+static const struct brc_integrate_loops *loops_of(const struct brc_sim *sim)
+{
+    static const struct brc_integrate_loops *const loops[BRC_N_SIMD] = {
+        [BRC_SIMD_BASE] = &brc_integrate_base,
+        [BRC_SIMD_AVX2] = &brc_integrate_avx2,
+        [BRC_SIMD_AVX512] = &brc_integrate_avx512};
+    return loops[brc_simd_of(sim->run.simd)];
+}
+
 void brc_integrate_drift(struct brc_sim *sim)
 {
-    struct brc_bodies *b = &sim->bodies;
-    double dt = sim->dt;
-    bool oriented = sim->model.flags & BRC_MODEL_ORIENTED;
-    for (size_t i = 0; i < b->n; i++) {
-        brc_axpy(b->x[i], dt, b->v[i]);
-        if (oriented && i < b->n_grains) {
-            if (is_isotropic(b->inertia[i]))
-                turn_isotropic(b->q[i], b->w[i], dt);
-            else
-                brc_integrate_rotate(b->q[i], b->w[i], b->l[i], b->inertia[i], dt);
-        }
-        b->travel[i] += dt * (brc_norm(b->v[i]) + b->reach[i] * brc_norm(b->w[i]));
-    }
-}
-
-/* Local non-viscous damping of a force (or moment) f against the velocity v. */
-static void local_damping(const struct brc_sim *sim, double d[3], const double f[3],
-                          const double v[3])
-{
-    double alpha = sim->damping_alpha;
-    if (sim->run.damping == BRC_DAMPING_CARTESIAN) {
-        for (int k = 0; k < 3; k++)
-            d[k] = v[k] == 0 ? 0 : -alpha * copysign(fabs(f[k]), v[k]); /* eq:vgcm:3 eq:vgcm:5 */
-        return;
-    }
-    double speed = brc_norm(v);
-    brc_scale(d, v, speed > 0 ? -alpha * brc_norm(f) / speed : 0);
-}
-
-struct kick_sums {
-    double kinetic;       /* sum of m v- . v+ / 2 */
-    double damping;       /* work of the damping force over the half step before the kick */
-    double damping_ahead; /* and over the half step after it */
-};
-
-/* v += dt (f + damping) / m, with the sums for the ledger. */
-static void kick_translation(const struct brc_sim *sim, size_t i, double dt, struct kick_sums *sums)
-{
-    const struct brc_bodies *b = &sim->bodies;
-    double d[3] = {0, 0, 0}, old[3], *v = b->v[i];
-    brc_copy(old, v);
-    if (sim->damping_alpha > 0)
-        local_damping(sim, d, b->f[i], v);
-    for (int k = 0; k < 3; k++)
-        v[k] += dt * (b->f[i][k] + d[k]) / b->mass[i]; /* eq:vgcm:1 */
-    sums->kinetic += 0.5 * b->mass[i] * brc_dot(old, v);
-    sums->damping -= 0.5 * dt * brc_dot(d, old);
-    sums->damping_ahead -= 0.5 * dt * brc_dot(d, v);
-}
-
-/* w and l from the moments; for equal moments of inertia l is left alone. */
-static void kick_rotation(const struct brc_sim *sim, size_t i, double dt, struct kick_sums *sums)
-{
-    const struct brc_bodies *b = &sim->bodies;
-    const double *inertia = b->inertia[i];
-    double d[3] = {0, 0, 0}, old[3], *w = b->w[i], lold[3];
-    brc_copy(old, w);
-    if (sim->damping_alpha > 0)
-        local_damping(sim, d, b->t[i], w); /* eq:vgcm:4 */
-    brc_add(d, d, b->t[i]);
-    if (is_isotropic(inertia)) {
-        brc_axpy(w, dt / inertia[0], d); /* eq:vgcm:2 */
-        sums->kinetic += 0.5 * inertia[0] * brc_dot(old, w);
-    } else {
-        brc_copy(lold, b->l[i]);
-        brc_axpy(b->l[i], dt, d);
-        brc_integrate_spin(w, b->q[i], b->l[i], inertia);
-        sums->kinetic += 0.5 * brc_dot(lold, w);
-    }
-    brc_sub(d, d, b->t[i]);
-    sums->damping -= 0.5 * dt * brc_dot(d, old);
-    sums->damping_ahead -= 0.5 * dt * brc_dot(d, w);
+    if (sim->model.flags & BRC_MODEL_ORIENTED)
+        drift_orientations(sim);
+    loops_of(sim)->drift(sim);
 }
 
 void brc_integrate_kick(struct brc_sim *sim, double dt)
 {
-    struct kick_sums sums = {0};
-    bool rotates = sim->model.flags & BRC_MODEL_ROTATES;
-    for (size_t i = 0; i < sim->bodies.n_grains; i++) {
-        kick_translation(sim, i, dt, &sums);
-        if (rotates)
-            kick_rotation(sim, i, dt, &sums);
-    }
-    sim->ledger.kinetic = sums.kinetic;
-    sim->ledger.local_damping += sums.damping;
-    sim->damping_ahead = sums.damping_ahead;
+    loops_of(sim)->kick(sim, dt);
 }
 
 /* Body i gets mass m and moment of inertia: momentum is kept, so that velocities only fall. */

@@ -24,4 +24,12 @@ void brc_integrate_stiffness(const struct brc_sim *sim, size_t body, double k[2]
  * the kinetic energy lost goes to the ledger. */
 void brc_integrate_scale_masses(struct brc_sim *sim);
 
+/* The loops over bodies for each instruction set: the same bits. */
+struct brc_integrate_loops {
+    void (*drift)(struct brc_sim *sim); /* without orientations */
+    void (*kick)(struct brc_sim *sim, double dt);
+};
+extern const struct brc_integrate_loops brc_integrate_base, brc_integrate_avx2,
+    brc_integrate_avx512;
+
 #endif

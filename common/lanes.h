@@ -95,6 +95,12 @@ BRC_LANES_INLINE brc_lanes brc_lanes_abs(brc_lanes a)
     return (brc_lanes)((brc_mask)a & INT64_MAX);
 }
 
+/* The size of a with the sign of b. */
+BRC_LANES_INLINE brc_lanes brc_lanes_sign(brc_lanes a, brc_lanes b)
+{
+    return (brc_lanes)(((brc_mask)a & INT64_MAX) | ((brc_mask)b & INT64_MIN));
+}
+
 BRC_LANES_INLINE brc_lanes brc_lanes_min(brc_lanes a, brc_lanes b)
 {
     return brc_lanes_pick(brc_lanes_less(a, b), a, b);
