@@ -15,7 +15,8 @@ enum {
     POLY_SLOTS = 512 /* touches at a time; a row begins at a multiple of BRC_LANES */
 };
 
-/* Four touches of one row, as in struct poly_touch; all zero where nothing touches. */
+/* Four touches of one row, as in struct poly_touch; where nothing touches all is zero but for
+ * delta, and -delta is a relative path of the bodies that cannot bring them in touch. */
 struct poly_touches {
     brc_lanes n[3], x[3], delta, weight, g[3], c[3];
 };
@@ -55,6 +56,7 @@ struct poly_vertex_item {
 struct poly_edge_item {
     int32_t slot, end[4];
     int32_t side; /* 1, 2: as struct poly_points has it; 0: not known */
+    double reach; /* m, as struct poly_pair has it */
 };
 
 /* Lists of vertices: by the place of the foot (plane; edge or vertex) and by how many vertices of
@@ -77,7 +79,7 @@ struct poly_block {
     struct brc_sim *sim;
     struct poly_state *st;
     double kn, kt, stiff; /* N/m; stiff: the larger one of those that act */
-    double rest, ell;
+    double rest, ell, skin;
     int32_t n_rows, n_slots, n_segments;
     int32_t row[POLY_ROWS], a[POLY_ROWS], b[POLY_ROWS]; /* filled up to whole groups */
     bool listed[POLY_ROWS];

@@ -3,6 +3,10 @@
  * be computed goes into work lists, and kernels.c does it four at a time. */
 #include "step.h"
 
+/* A point that has come apart stays awake while its gap is less than this many steps' path: to
+ * look at it again costs as much as it does for that long. */
+static const double DOZE = 4;
+
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -36,8 +40,7 @@ void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct p
                             .vb = (const double(*)[3])(st->world + s->vertex_first[b]),
                             .rest = radius + radius,
                             .ell = radius,
-                            .reach =
-                                poly_least(sim->bodies.reach[a], sim->bodies.reach[b]) - radius};
+                            .reach = poly_core_reach(sim, a, b)};
 }
 
 void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, size_t row,
@@ -118,7 +121,12 @@ static void put_touch(struct poly_block *block, int32_t slot, const struct poly_
     }
 }
 
-static const struct poly_touch no_touch = {.weight = 0};
+/* A slot of a segment without a point. */
+static void leave_empty(struct poly_block *block, const struct poly_segment *segment, int32_t slot)
+{
+    put_touch(block, slot, &(struct poly_touch){.weight = 0});
+    block->point[slot] = block->point[segment->slot];
+}
 
 /* A point by the literal functions. True when it is a vertex whose foot on a face or place is sure
  * now: then the work list has it. */
@@ -128,16 +136,23 @@ static bool touch_literally(struct poly_block *block, int32_t i, size_t p, int32
     const struct poly_rows *rows = c->model_columns;
     struct poly_points *points = c->point_columns;
     struct poly_feature f = poly_point(points, p);
-    struct poly_touch t;
+    struct poly_touch t, apart = {.weight = 0};
+    enum poly_rule rule = rule_of(block);
+    const struct poly_pair *pair = pair_of(block, i);
     double room = rows->room[block->row[i]], margin = 0;
-    int32_t *place = f.kind == POLY_VERTEX_B ? &points->i[p] : &points->j[p];
-    bool touches = poly_touch_again(&t, pair_of(block, i), &f, place, &points->active[p], &margin,
-                                    rule_of(block));
-    put_touch(block, slot, touches ? &t : &no_touch);
-    if (f.kind == POLY_EDGES)
-        return false;
-    points->hold[p] = room - margin;
-    return margin > 0;
+    int32_t *place = poly_remembered(&f);
+    bool touches = poly_touch_again(&t, pair, &f, place, &points->active[p], &margin, rule);
+    points->i[p] = f.i;
+    points->j[p] = f.j;
+    if (f.kind != POLY_EDGES) {
+        points->hold[p] = room - margin;
+        if (margin > 0)
+            return true;
+    }
+    if (!touches)
+        apart.delta = rule == POLY_MERGED ? t.delta : -poly_free_path(pair, &f, rule, room);
+    put_touch(block, slot, touches ? &t : &apart);
+    return false;
 }
 
 static void list_edges(struct poly_block *block, int32_t i, size_t p, int32_t slot)
@@ -152,7 +167,8 @@ static void list_edges(struct poly_block *block, int32_t i, size_t p, int32_t sl
     block->edge[block->n_edges++] =
         (struct poly_edge_item){.slot = slot,
                                 .end = {va + ea[0], va + ea[1], vb + eb[0], vb + eb[1]},
-                                .side = side == 3 ? 0 : side};
+                                .side = side == 3 ? 0 : side,
+                                .reach = poly_core_reach(block->sim, a, b)};
 }
 
 /* The work list for a vertex with these vertices near. */
@@ -215,51 +231,74 @@ static struct poly_spring_law spring_law(const struct brc_sim *sim)
                                     .mu = p->mu};
 }
 
-/* A point that does not touch: its spring is released, and it goes to sleep. */
-static void come_apart(struct poly_block *block, int32_t i, size_t p)
+/* A point that does not touch: its spring is released, and it goes to sleep when the path that it
+ * is free for is worth it. Returns whether it does. */
+static bool come_apart(struct poly_block *block, int32_t i, size_t p, double path)
 {
     struct brc_sim *sim = block->sim;
-    struct brc_contacts *c = &sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
-    struct poly_points *points = c->point_columns;
-    struct poly_feature f = poly_point(points, p);
-    struct poly_touch t;
-    enum poly_rule rule = rule_of(block);
-    size_t row = (size_t)block->row[i];
-    double room = rows->room[row], path;
-    if (rule == POLY_MERGED && f.kind != POLY_EDGES) {
-        double margin = room - points->hold[p];
-        uint8_t active = 0;
-        poly_touch_again(&t, pair_of(block, i), &f, poly_remembered(&f), &active, &margin, rule);
-        path = -t.delta;
-    } else {
-        path = poly_free_path(pair_of(block, i), &f, rule, room);
-    }
+    const struct poly_rows *rows = sim->pairs.model_columns;
+    struct poly_points *points = sim->pairs.point_columns;
     struct poly_spring_law law = spring_law(sim);
+    size_t row = (size_t)block->row[i];
     if (points->weight[p] > 0 && law.mu > 0 && law.kt > 0) {
         struct poly_motion m;
         poly_start_motion(&m, sim, block->a[i], block->b[i]);
         poly_release(sim->run.ledger ? &sim->ledger : NULL, &law, &m, points->xi[p],
                      points->weight[p]);
     }
-    poly_sleep_point(c, row, p, room - poly_most(path, 0));
+    points->weight[p] = 0;
+    points->active[p] = 0;
+    if (path < DOZE * block->group[i / BRC_LANES].path[i % BRC_LANES])
+        return false;
+    poly_sleep_point(&sim->pairs, row, p, rows->room[row] - path);
+    return true;
 }
 
-/* What has become of the points of a segment: from the last one on, so that those that are still to
- * come do not move. */
-static void settle_points(struct poly_block *block, const struct poly_segment *segment)
+static void copy_touch(struct poly_block *block, int32_t to, int32_t from)
+{
+    const double *x = (const double *)&block->touch[from / BRC_LANES] + from % BRC_LANES;
+    double *y = (double *)&block->touch[to / BRC_LANES] + to % BRC_LANES;
+    for (size_t k = 0; k < sizeof block->touch[0] / sizeof *x; k += BRC_LANES)
+        y[k] = x[k];
+}
+
+/* Takes the slots of a segment out that do not touch: the sums of its row are over touches alone.
+ * From the last one on, so that points that are still to come do not move. */
+static void drop_apart(struct poly_block *block, struct poly_segment *segment)
+{
+    int32_t slot = segment->slot, end = slot + segment->n, to = end;
+    for (int32_t k = end - 1; k >= slot; k--) {
+        const struct poly_touches *t = &block->touch[k / BRC_LANES];
+        if (t->weight[k % BRC_LANES] > 0)
+            continue;
+        to = k;
+        if (come_apart(block, segment->row, (size_t)block->point[k],
+                       poly_most(-t->delta[k % BRC_LANES], 0)))
+            for (int32_t after = k + 1; after < end; after++)
+                block->point[after]--;
+    }
+    if (to == end)
+        return;
+    for (int32_t k = to + 1; k < end; k++) {
+        if (!(block->touch[k / BRC_LANES].weight[k % BRC_LANES] > 0))
+            continue;
+        block->point[to] = block->point[k];
+        copy_touch(block, to++, k);
+    }
+    segment->n = to - slot;
+    for (; to % BRC_LANES != 0; to++)
+        leave_empty(block, segment, to);
+}
+
+/* What touches keeps its weight. */
+static void store_weights(struct poly_block *block, const struct poly_segment *segment)
 {
     struct poly_points *points = block->sim->pairs.point_columns;
-    for (int32_t slot = segment->slot + segment->n - 1; slot >= segment->slot; slot--) {
+    for (int32_t slot = segment->slot; slot < segment->slot + segment->n; slot++) {
         size_t p = (size_t)block->point[slot];
-        double weight = block->touch[slot / BRC_LANES].weight[slot % BRC_LANES];
-        if (!(weight > 0)) {
-            come_apart(block, segment->row, p);
-            continue;
-        }
         if (points->active[p] == 0)
             points->active[p] = 1;
-        points->weight[p] = weight;
+        points->weight[p] = block->touch[slot / BRC_LANES].weight[slot % BRC_LANES];
     }
 }
 
@@ -267,9 +306,11 @@ static void settle_points(struct poly_block *block, const struct poly_segment *s
 static void work_off(struct poly_block *block)
 {
     block->st->kernels.touch(block);
+    for (int32_t i = 0; i < block->n_segments; i++)
+        drop_apart(block, &block->segment[i]);
     block->st->kernels.points(block);
     for (int32_t i = 0; i < block->n_segments; i++)
-        settle_points(block, &block->segment[i]);
+        store_weights(block, &block->segment[i]);
     block->n_segments = block->n_slots = 0;
 }
 
@@ -278,10 +319,8 @@ static void end_segment(struct poly_block *block)
 {
     struct poly_segment *segment = &block->segment[block->n_segments];
     segment->n = block->n_slots - segment->slot;
-    for (; block->n_slots % BRC_LANES != 0; block->n_slots++) {
-        put_touch(block, block->n_slots, &no_touch);
-        block->point[block->n_slots] = block->point[segment->slot];
-    }
+    for (; block->n_slots % BRC_LANES != 0; block->n_slots++)
+        leave_empty(block, segment, block->n_slots);
     block->n_segments += segment->n > 0;
 }
 
@@ -431,6 +470,7 @@ static void open_block(struct poly_block *block, struct brc_sim *sim, struct pol
     block->stiff = law.mu > 0 && law.kt > 0 ? poly_most(law.kn, law.kt) : law.kn;
     block->rest = radius + radius;
     block->ell = radius;
+    block->skin = POLY_LIST_SKIN * radius;
     block->pair_row = -1;
     block->n_slots = block->n_segments = block->n_edges = 0;
     memset(block->n_vertices, 0, sizeof block->n_vertices);

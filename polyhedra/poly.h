@@ -12,6 +12,9 @@
 
 #include <string.h>
 
+/* Skin of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
+#define POLY_LIST_SKIN 0.05
+
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
     REAL(radius, "m", "1 mm", "(0, inf)", "sphero-radius R of erosion and rounding, eq 2")        \
@@ -113,6 +116,12 @@ struct poly_state {
 static inline const struct poly_params *poly_params_of(const struct brc_sim *sim)
 {
     return sim->params;
+}
+
+/* Smaller one of the radii of two cores about their centres. */
+static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32_t b)
+{
+    return poly_least(sim->bodies.reach[a], sim->bodies.reach[b]) - poly_params_of(sim)->radius;
 }
 
 /* Rotation matrices, core vertices and planes in space for the present poses. */

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Skins of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
-static const double LIST_SKIN = 0.05, WALL_SKIN = 0.05;
+/* Skin of the platens' lists, in radii R. */
+static const double WALL_SKIN = 0.05;
 /* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
 static const double PLATEN_TOLERANCE = 1e-6;
 
@@ -254,14 +254,14 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
 }
 
 static void set_point(const struct poly_points *points, size_t p, const struct poly_feature *f,
-                      double room)
+                      double sleep, double hold)
 {
     points->kind[p] = f->kind;
     points->i[p] = f->i;
     points->j[p] = f->j;
     memcpy(points->near[p], f->near, sizeof f->near);
-    points->sleep[p] = room - f->free;
-    points->hold[p] = HUGE_VAL;
+    points->sleep[p] = sleep;
+    points->hold[p] = hold;
     points->active[p] = 0;
     points->weight[p] = 0;
     brc_set(points->n[p], 0, 0, 0);
@@ -289,11 +289,11 @@ void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
     size_t next = first + (size_t)rows->awake[row];
     for (; next < end && rows->room[row] <= points->sleep[next]; next++) {
         struct poly_feature f = poly_point(points, next);
+        double hold = points->hold[next];
         size_t p = next;
         for (; p > first && comes_before(&f, points, p - 1, merged); p--)
             copy_point(points, p, p - 1);
-        f.free = 0;
-        set_point(points, p, &f, rows->room[row]);
+        set_point(points, p, &f, rows->room[row], hold);
     }
     rows->awake[row] = (int32_t)(next - first);
 }
@@ -303,13 +303,13 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
     const struct poly_points *points = c->point_columns;
     struct poly_rows *rows = c->model_columns;
     struct poly_feature f = poly_point(points, p);
+    double hold = points->hold[p];
     size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
     size_t awake = (size_t)c->p0[row] + (size_t)rows->awake[row]--;
     /* the others that are awake close up; those that sleep are sorted by when they wake up */
     for (; p + 1 < end && (p + 1 < awake || points->sleep[p + 1] > sleep); p++)
         copy_point(points, p, p + 1);
-    f.free = 0;
-    set_point(points, p, &f, sleep);
+    set_point(points, p, &f, sleep, hold);
 }
 
 /* Pairs that may touch at once first, then by the path that they are free for. */
@@ -346,7 +346,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
         if (p < first + kept)
             memcpy(points->near[p], list->feature[k].near, sizeof points->near[p]);
         else if (next < first + n)
-            set_point(points, next++, &list->feature[k], room);
+            set_point(points, next++, &list->feature[k], room - list->feature[k].free, HUGE_VAL);
     }
     c->np[row] = (int32_t)(next - first);
     rows->awake[row] = (int32_t)kept;
@@ -362,7 +362,7 @@ int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
     double allowance;
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
     BRC_TRY(poly_list_features(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
-                               LIST_SKIN * params->radius, &allowance));
+                               POLY_LIST_SKIN * params->radius, &allowance));
     rows->wake[row] = sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] + allowance;
     rows->room[row] = allowance;
     return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);

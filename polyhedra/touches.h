@@ -92,9 +92,9 @@ BRC_LANES_INLINE void full_weight(struct poly_touches *t)
         t->g[k] = t->c[k] = brc_lanes_all(0);
 }
 
+/* Touches that are apart: no weight; delta is what they say of the gap. */
 BRC_LANES_INLINE void hide_apart(struct poly_touches *t, brc_mask touches)
 {
-    t->delta = brc_lanes_where(touches, t->delta);
     t->weight = brc_lanes_where(touches, t->weight);
     mask(t->n, touches, t->n);
     mask(t->x, touches, t->x);
@@ -224,10 +224,45 @@ BRC_LANES_INLINE brc_lanes foot_weight(brc_lanes t, brc_lanes length, double ell
     return w0 * w1;
 }
 
-/* Four crossing edge pairs, as struct poly_crossing. */
+/* Four crossing edge pairs, as struct poly_crossing; ra and rb are r . a and r . b of struct
+ * poly_lines with unit a and b, r2 is r . r. */
 struct crossings {
-    brc_lanes a[3], b[3], c, sin2, ta, tb, la, lb;
+    brc_lanes a[3], b[3], c, sin2, ta, tb, la, lb, ra, rb, r2;
 };
+
+BRC_LANES_INLINE brc_lanes clamp(brc_lanes x, brc_lanes high)
+{
+    return brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), high);
+}
+
+/* path_to_end of features.c at u along an edge of which sign points out; t is along the other edge,
+ * ru and rt are r . unit direction of the one and the other, r from its start to that of the other.
+ */
+BRC_LANES_INLINE brc_lanes path_to_end(const struct crossings *x, brc_lanes u, double sign,
+                                       brc_lanes ru, brc_lanes rt, brc_lanes length,
+                                       brc_lanes reach, double skin)
+{
+    brc_lanes t = clamp(u * x->c - rt, length), along = ru + t * x->c - u;
+    brc_lanes out = sign * (along - x->c * (rt + t - u * x->c));
+    brc_lanes far2 = x->r2 + t * t + u * u + 2 * (t * rt - u * ru - t * u * x->c);
+    brc_lanes far = brc_lanes_sqrt(brc_lanes_max(far2, brc_lanes_all(0)));
+    return out / (brc_lanes_sqrt(x->sin2) + (far + skin) / reach);
+}
+
+/* path_to_edges of features.c: by the gap, or by how far the feet are beyond the ends. */
+BRC_LANES_INLINE brc_lanes path_to_edges(const struct crossings *x, brc_lanes reach, double rest,
+                                         double skin)
+{
+    const brc_lanes none = brc_lanes_all(0);
+    brc_lanes s = clamp(x->ta, x->la), t = clamp(s * x->c - x->rb, x->lb);
+    s = clamp(t * x->c + x->ra, x->la);
+    brc_lanes gap2 = x->r2 + s * s + t * t + 2 * (t * x->rb - s * x->ra - s * t * x->c);
+    brc_lanes path = brc_lanes_sqrt(brc_lanes_max(gap2, none)) - rest;
+    path = brc_lanes_max(path, path_to_end(x, none, -1, x->ra, x->rb, x->lb, reach, skin));
+    path = brc_lanes_max(path, path_to_end(x, x->la, 1, x->ra, x->rb, x->lb, reach, skin));
+    path = brc_lanes_max(path, path_to_end(x, none, -1, -x->rb, -x->ra, x->la, reach, skin));
+    return brc_lanes_max(path, path_to_end(x, x->lb, 1, -x->rb, -x->ra, x->la, reach, skin));
+}
 
 /* poly_crossing_weight */
 BRC_LANES_INLINE void weigh_crossing(struct poly_touches *t, const struct crossings *x, double ell,
@@ -249,9 +284,11 @@ BRC_LANES_INLINE void weigh_crossing(struct poly_touches *t, const struct crossi
 }
 
 /* poly_cross_lines, poly_cross_edges and poly_touch_crossing; side is +1 or -1 where it is known,
- * else 0, and is known afterwards. */
+ * else 0, and is known afterwards. Where the edges are apart, -delta is the path that they are free
+ * for. */
 BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_block *block,
-                                      brc_lanes p[4][3], brc_lanes *side, const bool merged)
+                                      brc_lanes p[4][3], brc_lanes *side, brc_lanes reach,
+                                      const bool merged)
 {
     struct crossings x;
     brc_lanes r[3], m[3];
@@ -286,7 +323,15 @@ BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_
     full_weight(t);
     if (merged)
         weigh_crossing(t, &x, block->ell, d);
-    return touches & positive(t->weight);
+    touches &= positive(t->weight);
+    if (brc_lanes_any(~touches)) {
+        x.ra = ra * per_a;
+        x.rb = rb * per_b;
+        x.r2 = brc_lanes_dot(r, r);
+        brc_lanes path = path_to_edges(&x, reach, block->rest, block->skin);
+        t->delta = brc_lanes_pick(touches, t->delta, -path);
+    }
+    return touches;
 }
 
 BRC_LANES_INLINE void edge_kernel(struct poly_block *block, const bool merged)
@@ -295,18 +340,19 @@ BRC_LANES_INLINE void edge_kernel(struct poly_block *block, const bool merged)
     int32_t n = block->n_edges;
     for (int32_t first = 0; first < n; first += BRC_LANES) {
         int32_t end[4][BRC_LANES], slot[BRC_LANES];
-        brc_lanes p[4][3], side;
+        brc_lanes p[4][3], side, reach;
         struct poly_touches t;
         for (int k = 0; k < BRC_LANES; k++) {
             const struct poly_edge_item *at = &block->edge[first + k < n ? first + k : first];
             slot[k] = at->slot;
+            reach[k] = at->reach;
             side[k] = at->side == 0 ? 0 : at->side == 1 ? 1 : -1;
             for (int j = 0; j < 4; j++)
                 end[j][k] = at->end[j];
         }
         for (int j = 0; j < 4; j++)
             brc_lanes_gather3(p[j], block->st->world, end[j]);
-        hide_apart(&t, touch_edges(&t, block, p, &side, merged));
+        hide_apart(&t, touch_edges(&t, block, p, &side, reach, merged));
         int32_t n_here = n - first < BRC_LANES ? n - first : BRC_LANES;
         put_touches(block, &t, slot, n_here);
         for (int32_t k = 0; k < n_here; k++)
