@@ -108,7 +108,7 @@ int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int3
     c->version++;
     c->k_version++;
     BRC_TRY(build_adjacency(ctx, c));
-    return brc_contacts_compact(ctx, c);
+    return brc_contacts_tidy(ctx, c);
 }
 
 int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t i, int32_t np)

@@ -137,8 +137,47 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
     return 0;
 }
 
+/* The rows that stay keep their order. */
+static bool is_ascending(const size_t *from, size_t n)
+{
+    size_t least = 0;
+    for (size_t row = 0; row < n; row++) {
+        if (from[row] == BRC_NEW_ROW)
+            continue;
+        if (from[row] < least)
+            return false;
+        least = from[row] + 1;
+    }
+    return true;
+}
+
+/* Rows in ascending order move in the columns that are there: first those that move down, from the
+ * first one on, then those that move up, from the last one on. */
+static void gather_in_place(struct brc_table *t, const size_t *from, size_t n)
+{
+    for (int i = 0; i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        char *column = brc_table_column(t, i);
+        for (size_t row = 0; row < n; row++)
+            if (from[row] != BRC_NEW_ROW && from[row] > row)
+                memcpy(column + row * size, column + from[row] * size, size);
+        for (size_t row = n; row-- > 0;)
+            if (from[row] < row) /* no new row is */
+                memcpy(column + row * size, column + from[row] * size, size);
+        for (size_t row = 0; row < n; row++)
+            if (from[row] == BRC_NEW_ROW)
+                memset(column + row * size, 0, size);
+        memset(column + n * size, 0, (round_up(n, ROWS) - n) * size);
+    }
+    t->n = n;
+}
+
 int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t *from, size_t n)
 {
+    if (n <= t->cap && is_ascending(from, n)) {
+        gather_in_place(t, from, n);
+        return 0;
+    }
     return replace_columns(ctx, t, from, n, n > t->cap ? n + n / 2 : t->cap);
 }
 

@@ -108,6 +108,33 @@ static void gather_takes_the_rows_asked_for(void **state)
     assert_int_equal(f->table.n, 0);
 }
 
+/* Rows that keep their order move within their columns: any mix of rows that go and rows that come.
+ */
+static void gather_in_order_moves_in_place(void **state)
+{
+    struct fixture_table *f = *state;
+    unsigned seed = 1;
+    for (int trial = 0; trial < 200; trial++) {
+        size_t from[64], n = 0, next = 0;
+        fill(f, 30);
+        CHECK_OK(&f->ctx, brc_table_resize(&f->ctx, &f->table, 64));
+        CHECK_OK(&f->ctx, brc_table_resize(&f->ctx, &f->table, 30));
+        const void *before = f->things.mass;
+        while (next < 30 && n < 64) {
+            unsigned pick = (seed = seed * 1103515245 + 12345) >> 16 & 3;
+            next += pick == 0;
+            from[n++] = pick == 1 || next >= 30 ? BRC_NEW_ROW : next++;
+        }
+        CHECK_OK(&f->ctx, brc_table_gather(&f->ctx, &f->table, from, n));
+        assert_ptr_equal(before, f->things.mass);
+        assert_int_equal(f->table.n, n);
+        for (size_t i = 0; i < n; i++) {
+            CHECK_NEAR(f->things.mass[i], from[i] == BRC_NEW_ROW ? 0 : 1 + (double)from[i], 0, 0);
+            assert_int_equal(f->things.pair[i][1], from[i] == BRC_NEW_ROW ? 0 : 3 * from[i]);
+        }
+    }
+}
+
 static void hash_sees_state_and_only_state(void **state)
 {
     struct fixture_table *f = *state;
@@ -167,10 +194,11 @@ static void no_fields_is_a_table_too(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(list_describes_the_struct),      TEST(growing_keeps_rows_and_zeroes_new_ones),
-        TEST(shrunk_rows_come_back_as_zero),  TEST(gather_takes_the_rows_asked_for),
-        TEST(hash_sees_state_and_only_state), TEST(hash_does_not_confuse_swapped_rows),
-        TEST(too_large_is_an_error),          TEST(no_fields_is_a_table_too),
+        TEST(list_describes_the_struct),          TEST(growing_keeps_rows_and_zeroes_new_ones),
+        TEST(shrunk_rows_come_back_as_zero),      TEST(gather_takes_the_rows_asked_for),
+        TEST(gather_in_order_moves_in_place),     TEST(hash_sees_state_and_only_state),
+        TEST(hash_does_not_confuse_swapped_rows), TEST(too_large_is_an_error),
+        TEST(no_fields_is_a_table_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
