@@ -18,6 +18,13 @@ struct brc_compare_order {
  * models run in forked processes. */
 int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order);
 
+/* A unit to show a value in. */
+struct brc_shown {
+    double factor;
+    const char *unit;
+};
+/* Pascals as GPa or MPa, strains in per cent, by the name and the largest value of the row. */
+struct brc_shown brc_compare_unit(const char *name, const char *unit, double largest);
 /* The table: one row a value, one column a summary. */
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n);
 

@@ -8,22 +8,15 @@
 
 enum { LABEL_WIDTH = 26, COLUMN_WIDTH = 16, MAX_ROWS_OF_RESULTS = 64 };
 
-/* A unit to show a value in. */
-struct shown {
-    double factor;
-    const char *unit;
-};
-
-/* Pascals as GPa or MPa, strains in per cent, by the name and the largest value of the row. */
-static struct shown choose_unit(const char *name, const char *unit, double largest)
+struct brc_shown brc_compare_unit(const char *name, const char *unit, double largest)
 {
     if (strcmp(unit, "Pa") == 0)
-        return largest >= 1e9 ? (struct shown){1e-9, "GPa"} : (struct shown){1e-6, "MPa"};
+        return largest >= 1e9 ? (struct brc_shown){1e-9, "GPa"} : (struct brc_shown){1e-6, "MPa"};
     if (strcmp(unit, "N") == 0)
-        return (struct shown){1e-3, "kN"};
+        return (struct brc_shown){1e-3, "kN"};
     if (strncmp(name, "strain", 6) == 0)
-        return (struct shown){100, "%"};
-    return (struct shown){1, strcmp(unit, "1") == 0 ? "" : unit};
+        return (struct brc_shown){100, "%"};
+    return (struct brc_shown){1, strcmp(unit, "1") == 0 ? "" : unit};
 }
 
 static void put_label(FILE *out, const char *name, const char *unit)
@@ -64,7 +57,7 @@ static void put_result(FILE *out, const struct brc_summary *const *summary, int 
         if (r && isfinite(r->value))
             largest = fmax(largest, fabs(r->value));
     }
-    struct shown shown = choose_unit(row->name, row->unit, largest);
+    struct brc_shown shown = brc_compare_unit(row->name, row->unit, largest);
     put_label(out, row->name, shown.unit);
     for (int i = 0; i < n; i++) {
         const struct brc_summary_value *r = brc_output_result(summary[i], row->name);

@@ -2,6 +2,7 @@
 /* The command line. */
 #include "comm.h"
 #include "compare.h"
+#include "converge.h"
 #include "export.h"
 #include "info.h"
 #include "run.h"
@@ -12,31 +13,45 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256 };
+enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256, MAX_GIVEN = 300 };
 
 struct options {
     const char *operand; /* CASE, or the section of `params`, or a file */
     const char *model, *dir, *table, *format;
+    const char *observable, *axes;
+    int seeds, refine, jobs;
+    const char *given[MAX_GIVEN][2]; /* options with their values, as they were given */
+    int n_given;
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
     bool is_resumed, is_forced, is_quiet, is_help;
 };
 
-/* Options by command: R run, C compare, X export. */
+/* Options by command: R run, C compare, V converge, X export. */
 static const struct option {
     const char *name, *value, *commands, *help;
 } options[] = {
     {"--model", "NAME", "R", "contact model; default: `model` of the case"},
+    {"--model", "NAME", "V", "this model alone; default: those that compare runs"},
+    {"-o", "DIR", "V", "folder of results; default: results/<case>"},
+    {"--observable", "NAME", "V", "the result to look at; default: strength"},
+    {"--axes", "LIST", "V",
+     "of step, loading, rate, grains and choices of the models as points, features; default: all"},
+    {"--seeds", "N", "V", "specimens, seeds from that of the case on; default: 4"},
+    {"--refine", "N", "V",
+     "loading of the reference finer by this power of 2, half the step; default: 8"},
+    {"--jobs", "N", "V", "runs at a time; default: 1, for times that nothing disturbs"},
     {"-o", "DIR", "RC", "folder of results; default: results/<case>/<model>, results/<case>"},
     {"-o", "FILE", "X", "what to write; default: on standard output"},
     {"--table", "NAME", "X", "CSV of this table: curve, events, bodies, pairs, ..."},
     {"--format", "FORMAT", "X", "stl: a solid a fragment; tess: the specimen for Neper"},
-    {"--set", "KEY=VALUE", "RC",
+    {"--set", "KEY=VALUE", "RCV",
      "replace a value of the case, as vgcm.e_bar=\"50 GPa\"; repeatable"},
     {"--resume", NULL, "RC", "go on from the saved state, to the same bits"},
-    {"--force", NULL, "RC", "replace results that are there"},
-    {"--quiet", NULL, "RC", "no progress, no log lines"},
-    {"--help", NULL, "RCPMIX", "this text"},
+    {"--resume", NULL, "V", "keep finished runs, go on with the others"},
+    {"--force", NULL, "RCV", "replace results that are there"},
+    {"--quiet", NULL, "RCV", "no progress, no log lines"},
+    {"--help", NULL, "RCVPMIX", "this text"},
 };
 enum { N_OPTIONS = sizeof options / sizeof options[0] };
 
@@ -49,6 +64,7 @@ struct command {
 
 static int act_run(struct brc_context *ctx, const struct options *o);
 static int act_compare(struct brc_context *ctx, const struct options *o);
+static int act_converge(struct brc_context *ctx, const struct options *o);
 static int act_info(struct brc_context *ctx, const struct options *o);
 static int act_export(struct brc_context *ctx, const struct options *o);
 static int act_params(struct brc_context *ctx, const struct options *o);
@@ -64,6 +80,13 @@ static const struct command commands[] = {
      "breccia compare cases/demo_tension.yaml -o results/pair",
      "Each model's results go to DIR/<model>; the table to DIR/compare.txt, the pictures to DIR.\n",
      act_compare},
+    {"converge", 'V', "CASE", "what accuracy costs: ladders of settings against a finer reference",
+     "breccia converge cases/demo_tension.yaml --observable E --axes step,loading --seeds 8",
+     "Runs the case with one setting changed at a time, on several specimens, with all models;\n"
+     "tells error, its uncertainty and cost of each, and the cheapest within 1 % and 5 %. Writes\n"
+     "converge.txt, converge.csv, converge_runs.csv and converge.png; finished runs are never "
+     "lost.\n",
+     act_converge},
     {"info", 'I', "FILE", "tell what a saved state or a frame holds",
      "breccia info results/pair/vgcm/state.h5",
      "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n",
@@ -112,7 +135,7 @@ static void print_help(FILE *out)
 static void print_command_help(FILE *out, const struct command *c)
 {
     fprintf(out, "usage: breccia %s%s%s%s\n\n%s\n%s", c->name, *c->operand ? " " : "", c->operand,
-            c->letter == 'R' || c->letter == 'C' ? " [OPTION]..." : "", c->does, c->more);
+            strchr("RCV", c->letter) ? " [OPTION]..." : "", c->does, c->more);
     fputs("\noptions:\n", out);
     for (int i = 0; i < N_OPTIONS; i++) {
         char left[40];
@@ -169,9 +192,43 @@ static int fail_option(struct brc_context *ctx, const struct command *c, const c
              suggest(name, names, n, hint), *hint ? "" : "; see breccia COMMAND --help");
 }
 
+static int take_count(struct brc_context *ctx, const char *name, const char *value, int largest,
+                      int *count)
+{
+    char *end;
+    long n = strtol(value, &end, 10);
+    if (*end || n < 1 || n > largest)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes a whole number from 1 to %d, not '%.40s'", name,
+                 largest, value);
+    *count = (int)n;
+    return 0;
+}
+
+/* Options of converge alone; false when the name is none. */
+static bool take_converge_option(struct brc_context *ctx, struct options *o, const char *name,
+                                 const char *value, int *code)
+{
+    if (strcmp(name, "--observable") == 0)
+        o->observable = value;
+    else if (strcmp(name, "--axes") == 0)
+        o->axes = value;
+    else if (strcmp(name, "--seeds") == 0)
+        *code = take_count(ctx, name, value, BRC_CONVERGE_MAX_SEEDS, &o->seeds);
+    else if (strcmp(name, "--refine") == 0)
+        *code = take_count(ctx, name, value, BRC_CONVERGE_MAX_REFINE, &o->refine);
+    else if (strcmp(name, "--jobs") == 0)
+        *code = take_count(ctx, name, value, BRC_PROGRESS_MAX_RUNS, &o->jobs);
+    else
+        return false;
+    return true;
+}
+
 static int take_option(struct brc_context *ctx, struct options *o, const char *name,
                        const char *value)
 {
+    int code = 0;
+    if (take_converge_option(ctx, o, name, value, &code))
+        return code;
     if (strcmp(name, "--model") == 0) {
         o->model = value;
     } else if (strcmp(name, "-o") == 0) {
@@ -220,6 +277,10 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
     if (option->value && !(value && *value))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a value: %s %s", option->name, option->name,
                  option->value);
+    if (value && o->n_given < MAX_GIVEN) {
+        o->given[o->n_given][0] = option->name;
+        o->given[o->n_given++][1] = value;
+    }
     return take_option(ctx, o, option->name, value);
 }
 
@@ -257,17 +318,9 @@ static void tell_resume(struct brc_context *ctx, const char *command, const stru
     char text[800];
     snprintf(text, sizeof text, "breccia %s", command);
     add_word(text, sizeof text, o->operand);
-    if (o->model) {
-        add_word(text, sizeof text, "--model");
-        add_word(text, sizeof text, o->model);
-    }
-    if (o->dir) {
-        add_word(text, sizeof text, "-o");
-        add_word(text, sizeof text, o->dir);
-    }
-    for (int i = 0; i < o->n_overrides; i++) {
-        add_word(text, sizeof text, "--set");
-        add_word(text, sizeof text, o->overrides[i]);
+    for (int i = 0; i < o->n_given; i++) {
+        add_word(text, sizeof text, o->given[i][0]);
+        add_word(text, sizeof text, o->given[i][1]);
     }
     add_word(text, sizeof text, "--resume");
     size_t used = strlen(ctx->message);
@@ -387,6 +440,48 @@ static int act_compare(struct brc_context *ctx, const struct options *o)
     brc_job_free(&job);
     if (code == BRC_ERR_INTERRUPTED)
         tell_resume(ctx, "compare", o);
+    return code;
+}
+
+static int converge_job(struct brc_context *ctx, const struct options *o, const struct brc_job *job)
+{
+    char dir[PATH_SIZE];
+    const struct brc_converge_order order = {.job = job,
+                                             .model = o->model,
+                                             .dir = dir,
+                                             .observable =
+                                                 o->observable ? o->observable : "strength",
+                                             .axes = o->axes ? o->axes : "",
+                                             .seeds = o->seeds ? o->seeds : 4,
+                                             .refine = o->refine ? o->refine : 8,
+                                             .jobs = o->jobs ? o->jobs : 1,
+                                             .is_resumed = o->is_resumed,
+                                             .is_forced = o->is_forced};
+    if (order.refine < 2 || (order.refine & (order.refine - 1)) != 0)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
+                 BRC_CONVERGE_MAX_REFINE, order.refine);
+    if (o->dir)
+        snprintf(dir, sizeof dir, "%s", o->dir);
+    else
+        snprintf(dir, sizeof dir, "results/%s", job->name);
+    brc_run_hold_signals();
+    int code = brc_converge(ctx, &order);
+    if (code == 0)
+        printf("results in %s\n", dir);
+    return code;
+}
+
+static int act_converge(struct brc_context *ctx, const struct options *o)
+{
+    struct brc_job job;
+    int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
+    if (code == 0) {
+        code = converge_job(ctx, o, &job);
+        brc_job_locate(ctx, &job);
+    }
+    brc_job_free(&job);
+    if (code == BRC_ERR_INTERRUPTED)
+        tell_resume(ctx, "converge", o);
     return code;
 }
 
