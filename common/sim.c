@@ -29,6 +29,9 @@ const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scal
 enum { TIDY_STEPS = 100 };
 /* growth of the largest sum k / m that calls for a new estimate */
 static const double LIMIT_GROWTH = 1.05;
+/* factor on the scaled masses that needs no look at the eigenfrequencies, and the part of the limit
+ * that a step may be with a smaller one */
+static const double SAFE_MASS_MARGIN = 1.2, MASS_LIMIT = 0.9;
 
 /* Adds the forces and moments of all rows to the bodies, row after row: for each body that is the
  * ascending order of its rows, so that the sums depend on global numbers only. */
@@ -124,6 +127,24 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
     return 0;
 }
 
+/* Quasi-static regime: masses grow with the stiffness. Those below what is safe for every network
+ * are held against the largest eigenfrequency of the present one. */
+static int update_masses(struct brc_sim *sim, bool is_listed)
+{
+    double margin = sim->run.mass_margin;
+    brc_integrate_scale_masses(sim);
+    if (margin >= SAFE_MASS_MARGIN || !is_listed)
+        return 0;
+    BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
+    double least = margin / (MASS_LIMIT * MASS_LIMIT * sim->dt_limit * sim->dt_limit);
+    if (least > margin)
+        BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
+                 "run.mass_margin = %g is unstable at step %lld; use at least %.2g here, or %g, "
+                 "which holds always",
+                 margin, (long long)sim->step, least, SAFE_MASS_MARGIN);
+    return 0;
+}
+
 /* Masses (quasi-static) or time step (dynamic) follow the stiffness of the contacts from the first
  * step on in which it has changed. */
 static int follow_stiffness(struct brc_sim *sim, bool is_listed)
@@ -136,8 +157,7 @@ static int follow_stiffness(struct brc_sim *sim, bool is_listed)
     sim->k_seen[1] = sim->platens.k_version;
     if (sim->run.regime == BRC_DYNAMIC)
         return update_dt(sim, is_listed);
-    brc_integrate_scale_masses(sim);
-    return 0;
+    return update_masses(sim, is_listed);
 }
 
 static void compute_forces(struct brc_sim *sim)

@@ -22,7 +22,9 @@ enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
         "damping")                                                                               \
     REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error") \
     REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit")        \
-    REAL(mass_margin, "1", "1.2", "[1, 100]", "quasi_static: factor on the scaled masses")       \
+    REAL(mass_margin, "1", "1.2", "(0, 100]",                                                    \
+         "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "   \
+         "measured, and an unstable step is an error")                                           \
     REAL(local_damping, "1", "0.7", "[0, 1)", "quasi_static: local non-viscous damping alpha")   \
     CHOICE(damping, "cartesian|along_velocity", "cartesian",                                     \
            "local damping per Cartesian component as printed, or along the velocity")            \

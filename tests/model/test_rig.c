@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loading: which rates a test goes through. */
+#include "common/stability.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>
@@ -60,12 +61,55 @@ static void a_burst_brakes_and_lets_go(void **state)
     assert_true(let_go > 100);
 }
 
+/* A free vibration with the least masses that are accepted: in the leapfrog's velocities at half
+ * steps, the energy is at most 1 / (1 - 0.9^2) of what was given. */
+static void least_masses_are_stable(void **state)
+{
+    struct fixture *f = *state;
+    const struct brc_model *vgcm = brc_registry_find("vgcm");
+    const char *const bonds = "interaction: all; sigma_t: 1e3 MPa; tau: 1e3 MPa; softening: none",
+                      *const free_run = "kind: none";
+    char run[100];
+    double limit, given = 0;
+    fixture_grid(f, 4, 4, 4, 0.01, 0.5);
+    fixture_sim(f, vgcm, bonds, free_run, "local_damping: 0");
+    CHECK_OK(&f->ctx, brc_stability_limit(&f->sim, &limit));
+    double least = 1.2 / (0.81 * limit * limit);
+    CHECK_BETWEEN(least, 0.1, 0.6);
+    snprintf(run, sizeof run, "local_damping: 0; mass_margin: %.17g", 1.001 * least);
+    fixture_sim(f, vgcm, bonds, free_run, run);
+    for (size_t i = 0; i < 64; i++)
+        for (int k = 0; k < 3; k++) {
+            f->sim.bodies.v[i][k] = 1e-9 * fixture_draw(f);
+            given += 0.5 * f->sim.bodies.mass[i] * pow(f->sim.bodies.v[i][k], 2);
+        }
+    for (int step = 0; step < 5000; step++) {
+        fixture_steps(f, 1);
+        assert_true(f->sim.ledger.kinetic < given / (1 - 0.81));
+    }
+}
+
+static void smaller_masses_are_refused(void **state)
+{
+    struct fixture *f = *state;
+    struct brc_run_params run;
+    fixture_grid(f, 4, 4, 4, 0.01, 0.5);
+    fixture_sim(f, brc_registry_find("vgcm"), "", "", "");
+    run = f->sim.run;
+    run.mass_margin = 0.05;
+    struct brc_sim sim;
+    CHECK_FAILS(&f->ctx,
+                brc_sim_create(&f->ctx, &sim, brc_registry_find("vgcm"), f->sim.params,
+                               &f->specimen, &f->sim.rig.params, &run),
+                BRC_ERR_INPUT, "run.mass_margin = 0.05 is unstable at step 0; use at least 0.");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(a_fixed_rate_stays),
-        FIXTURE_TEST(adaptive_rates_reach_their_bounds),
-        FIXTURE_TEST(a_burst_brakes_and_lets_go),
+        FIXTURE_TEST(a_fixed_rate_stays),         FIXTURE_TEST(adaptive_rates_reach_their_bounds),
+        FIXTURE_TEST(a_burst_brakes_and_lets_go), FIXTURE_TEST(least_masses_are_stable),
+        FIXTURE_TEST(smaller_masses_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
