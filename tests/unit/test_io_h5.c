@@ -46,7 +46,7 @@ static void make_sim(struct fixture *f)
     CHECK_OK(&f->ctx, brc_contacts_points(&f->ctx, &f->sim.pairs, 0, 2));
     struct points *p = f->sim.pairs.point_columns; /* row 1 before row 0 */
     for (int i = 0; i < 6; i++)
-        p->u[i] = 100 + i;
+        p->u[f->sim.pairs.p0[1] + i] = 100 + i;
     f->sim.pairs.f[2][1] = -12.5;
     f->sim.pairs.status[2] = BRC_BROKEN;
     const struct brc_event event = {.a = 1, .b = 5, .facet = 2, .mode = BRC_MODE_SHEAR};
