@@ -4,6 +4,7 @@
 #include "gnuplot.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double LEAST = 2e-4; /* relative error; what is below is drawn there */
@@ -40,10 +41,25 @@ static bool is_drawn(const struct brc_converge_row *row)
     return isfinite(row->error.mean) && row->cpu_s > 0 && !(is_choice && row->is_case);
 }
 
+/* What stands at a point: the value in two digits, or the choice. */
+static const char *short_value(const struct brc_converge_setting *s, char text[32])
+{
+    const char *value = strchr(s->label, '=');
+    value = value ? value + 1 : s->label;
+    char *end;
+    double x = strtod(value, &end);
+    if (*end == '\0')
+        snprintf(text, 32, "%.2g", x);
+    else
+        snprintf(text, 32, "%.31s", value);
+    return text;
+}
+
 /* Block of data: cost, error, its bounds, label. */
 static int put_block(FILE *out, const struct brc_converge_report *r, int model, int axis, int first)
 {
     int n = 0;
+    char text[32];
     fprintf(out, "$axis_%d_%d << end_of_data\n", model, axis);
     for (int i = first; i < r->n; i++) {
         const struct brc_converge_row *row = &r->row[i];
@@ -51,10 +67,9 @@ static int put_block(FILE *out, const struct brc_converge_report *r, int model, 
             continue;
         double e = fabs(row->error.mean);
         double se = isfinite(row->error.deviation) ? row->error.deviation : 0;
-        const char *value = strchr(row->setting->label, '=');
         fprintf(out, "%.6g %.6g %.6g %.6g \"%s\"\n", row->cpu_s, 100 * fmax(e, LEAST),
                 100 * fmax(e - se, LEAST), 100 * fmax(e + se, LEAST),
-                value ? value + 1 : row->setting->label);
+                short_value(row->setting, text));
         n++;
     }
     fputs("end_of_data\n", out);
@@ -97,20 +112,28 @@ static void put_curve(FILE *out, const struct brc_converge_report *r, int model,
             name, colour(axis));
 }
 
-/* The cheapest setting within each error, ringed. */
-static void put_cheapest(FILE *out, const struct brc_converge_report *r)
+static void put_point(FILE *out, const struct brc_converge_row *row, int mark, double size,
+                      const char *rgb)
+{
+    fprintf(out,
+            "  '+' every ::0::0 using (%.6g):(%.6g) with points pt %d ps %g lw 2.5 lc rgb '%s' "
+            "title ",
+            row->cpu_s, 100 * fmax(fabs(row->error.mean), LEAST), mark, size, rgb);
+}
+
+/* The case as written, and the cheapest setting within each error, ringed. */
+static void put_marks(FILE *out, const struct brc_converge_report *r)
 {
     static const char *const ring[] = {"#c0001a", "#e8a000"};
+    if (is_drawn(&r->row[BRC_CONVERGE_AT_CASE])) {
+        put_point(out, &r->row[BRC_CONVERGE_AT_CASE], 3, 2, "#000000");
+        fputs("'as written', \\\n", out);
+    }
     for (int k = 0; k < 2; k++) {
         if (r->cheapest[k] < 0)
             continue;
-        const struct brc_converge_row *row = &r->row[r->cheapest[k]];
-        fprintf(
-            out,
-            "  '+' every ::0::0 using (%.6g):(%.6g) with points pt 6 ps %g lw 3 lc rgb '%s' title "
-            "'cheapest within %g %%', \\\n",
-            row->cpu_s, 100 * fmax(fabs(row->error.mean), LEAST), k ? 3.4 : 2.6, ring[k],
-            100 * brc_converge_within[k]);
+        put_point(out, &r->row[r->cheapest[k]], 6, k ? 3.4 : 2.6, ring[k]);
+        fprintf(out, "'cheapest within %g %%', \\\n", 100 * brc_converge_within[k]);
     }
 }
 
@@ -130,7 +153,7 @@ static void put_panel(FILE *out, const struct brc_converge_report *r, int model,
     for (int i = 0; i < n; i++)
         if (n_points[i] > 0)
             put_curve(out, r, model, i, first[i]);
-    put_cheapest(out, r);
+    put_marks(out, r);
     fputs("  1 with lines dt 2 lw 1 lc rgb '#888888' notitle, \\\n"
           "  5 with lines dt 2 lw 1 lc rgb '#888888' notitle\n",
           out);
@@ -148,10 +171,10 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
     fprintf(
         out,
         "# gnuplot converge.gp draws converge.png\n"
-        "set terminal pngcairo size %d,620 font 'sans,12' background '#ffffff'\n"
+        "set terminal pngcairo size %d,660 font 'sans,12' background '#ffffff'\n"
         "set output 'converge.png'\n"
         "set logscale xy\nset grid lc rgb '#dddddd' lt 1\nset border 3\nset tics nomirror\n"
-        "set key outside bottom center horizontal\n"
+        "set key at graph 0.5, graph -0.14 center top horizontal maxrows 3\nset bmargin 8\n"
         "set xlabel 'processor time of a run [s]'\nset ylabel 'error of the %s [%%]' noenhanced\n",
         760 * study->n_models, study->results[study->observable].name);
     for (int i = 0; i < study->n_models; i++) {

@@ -137,29 +137,43 @@ static void put_cost(FILE *out, struct brc_converge_cost cost)
     if (isfinite(cost.cost))
         fprintf(out, "%s%.0f", cost.is_bound ? "at most " : "", cost.cost);
     else
-        fputs("no rung", out);
+        fputs("none of the rungs", out);
 }
 
+static void put_level(FILE *out, const struct brc_converge_report *r, double level,
+                      struct brc_converge_cost adaptive, struct brc_converge_cost fixed)
+{
+    fprintf(out, "%5.2f %%: ", 100 * level);
+    put_cost(out, adaptive);
+    fputs(" against ", out);
+    put_cost(out, fixed);
+    if (isfinite(adaptive.cost) && isfinite(fixed.cost))
+        fprintf(out, ", fixed takes %.2f times as many", fixed.cost / adaptive.cost);
+    if (level < r->uncertainty)
+        fputs(" (below the uncertainty of the reference)", out);
+    fputc('\n', out);
+}
+
+/* At some errors, and at that of the case as written, or of the reference where that is larger. */
 static void put_loadings(FILE *out, const struct brc_converge_report *r)
 {
     struct brc_converge_rung adaptive[BRC_CONVERGE_MAX_SETTINGS], fixed[BRC_CONVERGE_MAX_SETTINGS];
     int n = take_steps(r, "loading", adaptive), m = take_steps(r, "rate", fixed);
+    const struct brc_converge_row *the_case = &r->row[BRC_CONVERGE_AT_CASE];
     if (n == 0 || m == 0)
         return;
     fputs("steps for an error, adaptive against fixed loading:\n", out);
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
-        struct brc_converge_cost a = brc_converge_cost(adaptive, n, 0, levels[i]);
-        struct brc_converge_cost f = brc_converge_cost(fixed, m, 0, levels[i]);
-        fprintf(out, "  %3g %%: ", 100 * levels[i]);
-        put_cost(out, a);
-        fputs(" against ", out);
-        put_cost(out, f);
-        if (isfinite(a.cost) && isfinite(f.cost))
-            fprintf(out, ", %.2g times fewer", f.cost / a.cost);
-        if (r->uncertainty > levels[i])
-            fputs(" (below the uncertainty of the reference)", out);
-        fputc('\n', out);
+        fputs("              ", out);
+        put_level(out, r, levels[i], brc_converge_cost(adaptive, n, 0, levels[i]),
+                  brc_converge_cost(fixed, m, 0, levels[i]));
     }
+    double level = fmax(fabs(the_case->error.mean), r->uncertainty);
+    if (!isfinite(level))
+        return;
+    fputs("  as written, ", out);
+    put_level(out, r, level, (struct brc_converge_cost){.cost = the_case->steps},
+              brc_converge_cost(fixed, m, 0, level));
 }
 
 /* ---- everything ---------------------------------------------------------------------------- */

@@ -178,8 +178,10 @@ static void test_print(void **state)
     assert_non_null(strstr(text, "reference strength 150.0 MPa"));
     assert_non_null(strstr(text, "cheapest within 5 %: loading number=6, 5000 steps, 5.000 s"));
     /* errors 2 % at 10000 and 4.67 % at 5000 steps; 0.67 % at 100000 and 12 % at 50000 */
-    assert_non_null(strstr(text, "5 %: at most 5000 against 61681, 12 times fewer"));
-    assert_non_null(strstr(text, "2 %: 10000 against 76839, 7.7 times fewer"));
+    assert_non_null(
+        strstr(text, " 5.00 %: at most 5000 against 61681, fixed takes 12.34 times as many"));
+    assert_non_null(strstr(text, " 2.00 %: 10000 against 76839, fixed takes 7.68 times as many"));
+    assert_non_null(strstr(text, "as written,  2.00 %: 10000 against 76839"));
     free(text);
 }
 
