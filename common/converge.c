@@ -33,6 +33,7 @@ struct ladder {
     struct brc_converge_record record;
     struct task task[MAX_JOBS];
     struct brc_child child[MAX_JOBS];
+    size_t n_grains;      /* of the case's own specimen */
     int n_done, n_wanted; /* runs of the present phase */
     double weight_left;   /* their expected processor time, s */
 };
@@ -106,9 +107,7 @@ static int try_models(struct ladder *l)
     int code = brc_specimen_create(l->ctx, &study->order->job->specimen, &specimen);
     for (int i = 0; i < study->n_models && code == 0; i++)
         code = try_model(l, &specimen, &study->model[i]);
-    if (code == 0)
-        brc_log(l->ctx, "%s: %zu grains, %d specimens", study->order->job->name,
-                specimen.facets.n_cells, study->order->seeds);
+    l->n_grains = specimen.facets.n_cells;
     brc_specimen_free(&specimen);
     return code;
 }
@@ -133,6 +132,7 @@ static int prepare(struct ladder *l)
     BRC_TRY(find_observable(l->ctx, study));
     for (int i = 0; i < study->n_models; i++)
         BRC_TRY(brc_converge_first_settings(l->ctx, o, &study->model[i]));
+    brc_log(l->ctx, "%s: %zu grains, specimens: %d", o->job->name, l->n_grains, o->seeds);
     BRC_TRY(brc_run_make_folder(l->ctx, o->dir));
     return brc_converge_record_open(l->ctx, &l->record, study);
 }
@@ -354,18 +354,14 @@ static int run_phase(struct ladder *l, int first, int end)
     return code ? code : each_run(l, first, end, fill);
 }
 
-/* Of the case's own runs, up to the peak. */
+/* Of the case on the first specimen, up to the peak: more specimens leave the ladder as it is. */
 static double mean_rate(const struct brc_converge_study *study, const struct brc_converge_model *m)
 {
-    const struct brc_converge_run *run = m->setting[BRC_CONVERGE_AT_CASE].run;
-    double rate[BRC_CONVERGE_MAX_SEEDS];
-    int n = 0, peak = 0;
-    while (peak < study->n_results && strcmp(study->results[peak].name, "strain_at_peak") != 0)
-        peak++;
-    for (int i = 0; i < study->order->seeds && peak < study->n_results; i++)
-        if (isfinite(run[i].result[peak]) && run[i].steps > 0)
-            rate[n++] = run[i].result[peak] / ((double)run[i].steps * run[i].dt);
-    return n > 0 ? brc_converge_median(rate, n) : 0;
+    const struct brc_converge_run *run = &m->setting[BRC_CONVERGE_AT_CASE].run[0];
+    for (int i = 0; i < study->n_results; i++)
+        if (strcmp(study->results[i].name, "strain_at_peak") == 0 && run->steps > 0)
+            return run->result[i] / ((double)run->steps * run->dt);
+    return 0;
 }
 
 static int run_all(struct ladder *l)

@@ -67,7 +67,7 @@ enum {
 struct brc_converge_model {
     const struct brc_model *model;
     struct brc_test_params test; /* with its automatic rates filled in */
-    double mean_rate;            /* 1/s, of the case's own runs up to the peak; 0: not run yet */
+    double mean_rate; /* 1/s, of the case up to the peak, first specimen; 0: not run yet */
     int n;
     struct brc_converge_setting *setting; /* BRC_CONVERGE_MAX_SETTINGS */
 };

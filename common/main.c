@@ -35,8 +35,7 @@ static const struct option {
     {"--model", "NAME", "V", "this model alone; default: those that compare runs"},
     {"-o", "DIR", "V", "folder of results; default: results/<case>"},
     {"--observable", "NAME", "V", "the result to look at; default: strength"},
-    {"--axes", "LIST", "V",
-     "of step, loading, rate, grains and choices of the models as points, features; default: all"},
+    {"--axes", "LIST", "V", "of step, loading, rate, grains, points, features, ...; default: all"},
     {"--seeds", "N", "V", "specimens, seeds from that of the case on; default: 4"},
     {"--refine", "N", "V",
      "loading of the reference finer by this power of 2, half the step; default: 8"},
@@ -143,7 +142,7 @@ static void print_command_help(FILE *out, const struct command *c)
             continue;
         snprintf(left, sizeof left, "%s%s%s", options[i].name, options[i].value ? " " : "",
                  options[i].value ? options[i].value : "");
-        fprintf(out, "  %-16s %s\n", left, options[i].help);
+        fprintf(out, "  %-18s %s\n", left, options[i].help);
     }
     fprintf(out, "\nexample:\n  %s\n\n", c->example);
     print_statuses(out);

@@ -47,7 +47,9 @@ expect 2 "did you mean '--axes'?" "$breccia" converge case.yaml --axis step
 expect 3 "use --seeds 1" "$breccia" converge case.yaml --set specimen.grains=points
 expect 3 "nothing to converge" "$breccia" converge case.yaml --set test.kind=none
 expect 3 "there are: " "$breccia" converge case.yaml --model nothing
-[ "$("$breccia" converge case.yaml --axes stp 2>&1 | wc -l)" -eq 1 ] || fail "more than one line"
+for option in --axes=stp --observable=strenth; do
+    [ "$("$breccia" converge case.yaml $option 2>&1 | wc -l)" -eq 1 ] || fail "$option: not one line"
+done
 [ ! -e results ] || fail "a refused ladder has made a folder"
 
 # a ladder of all models
