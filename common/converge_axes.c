@@ -16,8 +16,7 @@ enum {
     N_CHOICES = sizeof choices / sizeof choices[0]
 };
 
-static const double COARSEST = 64;      /* loading and rate, times that of the case */
-static const double FINEST_STEP = 0.25; /* times that of the case */
+static const double COARSEST = 64; /* loading and rate, times that of the case */
 static const double REFERENCE_STEP = 0.5;
 
 /* ---- names --------------------------------------------------------------------------------- */
@@ -236,29 +235,28 @@ static void put_loading(struct brc_converge_setting *s, const struct brc_test_pa
         put_rate(s, factor * t->rate);
 }
 
-/* The step of the case is that of the largest factor that is stable, or less. */
+/* Up to twice the step of the case; what is above the stable limit is told by its runs. A step
+ * that is given is an error above the limit, and one that is a part of it stays below it. */
 static double largest_step(const struct brc_run_params *run)
 {
     if (run->regime == BRC_QUASI_STATIC)
-        return sqrt(run->mass_margin);
-    return run->dt > 0 ? 1 : fmin(1.9, 0.95 / run->dt_margin);
+        return 2;
+    return run->dt > 0 ? 1 : 0.95 / run->dt_margin;
 }
 
 static int add_step(struct brc_context *ctx, const struct brc_converge_order *order,
                     struct brc_converge_model *m)
 {
+    static const double factors[] = {0.25, 0.5, 1, 1.41421356, 2};
     const struct brc_run_params *run = &order->job->run;
-    double largest = largest_step(run);
-    for (double factor = FINEST_STEP; factor <= 1; factor *= 2) {
-        struct brc_converge_setting s = make("step", BRC_CONVERGE_LADDER, factor);
-        put_step(&s, run, factor);
+    for (int i = 0; i < 5; i++) {
+        struct brc_converge_setting s = make("step", BRC_CONVERGE_LADDER, factors[i]);
+        if (factors[i] > largest_step(run))
+            break;
+        put_step(&s, run, factors[i]);
         BRC_TRY(add(ctx, order, m, &s));
     }
-    if (largest < 1.01)
-        return 0;
-    struct brc_converge_setting s = make("step", BRC_CONVERGE_LADDER, largest);
-    put_step(&s, run, largest);
-    return add(ctx, order, m, &s);
+    return 0;
 }
 
 static int add_loading(struct brc_context *ctx, const struct brc_converge_order *order,

@@ -61,11 +61,11 @@ done
 [ ! -e all/converge_unfinished ] || fail "finished runs leave folders"
 if command -v gnuplot >/dev/null && [ ! -s all/converge.png ]; then fail "no chart"; fi
 [ "$(grep -c ': reference E ' all/converge.txt)" -eq "$n_models" ] || fail "a model has no table"
-# case, reference and two more, steps of 1/4, 1/2, 1 and the largest, three grain sizes; two seeds.
+# case, reference and two more, steps of 1/4, 1/2, 1, 1.4 and 2, three grain sizes; two seeds.
 # Those that are the case or the reference's loading again are run once.
 for name in $("$breccia" models | awk '{ print $1 }'); do
-    [ "$(grep -c ",$name," all/converge_runs.csv)" -eq 16 ] || fail "runs of $name"
-    [ "$(grep -c "^$name," all/converge.csv)" -eq 11 ] || fail "settings of $name"
+    [ "$(grep -c ",$name," all/converge_runs.csv)" -eq 18 ] || fail "runs of $name"
+    [ "$(grep -c "^$name," all/converge.csv)" -eq 12 ] || fail "settings of $name"
 done
 expect 3 "already holds results (converge_runs.csv)" "$breccia" converge case.yaml -o all
 
