@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "child.h"
 
-#include "comm.h"
 #include "run.h"
 
 #include <errno.h>
@@ -28,13 +27,10 @@ static void live(const struct brc_context *parent, const struct brc_child *child
     struct brc_progress progress;
     struct brc_outcome outcome = {0};
     brc_progress_begin_pipe(&progress, child->pipe);
-    outcome.code = brc_comm_start(&ctx);
-    if (outcome.code == 0)
-        outcome.code = work->act(&ctx, work->user, &progress, &outcome.summary);
+    outcome.code = work->act(&ctx, work->user, &progress, &outcome.summary);
     memcpy(outcome.message, ctx.message, sizeof outcome.message);
     bool is_told =
         fwrite(&outcome, sizeof outcome, 1, child->result) == 1 && fflush(child->result) == 0;
-    brc_comm_end();
     _exit(is_told ? 0 : 1);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs in forked processes, side by side: each sends reports of its progress and leaves an outcome.
- * Start no MPI before: each child starts its own. */
+ * They do without MPI, whose start and end in many processes at once may fail; start none before.
+ */
 #ifndef BRC_CHILD_H
 #define BRC_CHILD_H
 
