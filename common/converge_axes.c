@@ -16,7 +16,7 @@ enum {
     N_CHOICES = sizeof choices / sizeof choices[0]
 };
 
-static const double COARSEST = 64; /* loading and rate, times that of the case */
+enum { COARSEST = 64 }; /* loading and rate, times that of the case */
 static const double REFERENCE_STEP = 0.5;
 
 /* ---- names --------------------------------------------------------------------------------- */
@@ -262,7 +262,8 @@ static int add_step(struct brc_context *ctx, const struct brc_converge_order *or
 static int add_loading(struct brc_context *ctx, const struct brc_converge_order *order,
                        struct brc_converge_model *m)
 {
-    for (double factor = 1.0 / order->refine; factor <= COARSEST; factor *= 2) {
+    for (int k = 1; k <= COARSEST * order->refine; k *= 2) {
+        double factor = (double)k / order->refine;
         struct brc_converge_setting s = make("loading", BRC_CONVERGE_LADDER, factor);
         put_target(&s, &m->test, factor);
         BRC_TRY(add(ctx, order, m, &s));
@@ -288,7 +289,8 @@ static int add_rate(struct brc_context *ctx, const struct brc_converge_order *or
         brc_log(ctx, "%s: no peak was found, so the axis rate is left out", m->model->name);
         return 0;
     }
-    for (double factor = 1.0 / order->refine; factor <= COARSEST; factor *= 2) {
+    for (int k = 1; k <= COARSEST * order->refine; k *= 2) {
+        double factor = (double)k / order->refine;
         struct brc_converge_setting s = make("rate", BRC_CONVERGE_LADDER, factor);
         put_rate(&s, factor * base);
         BRC_TRY(add(ctx, order, m, &s));

@@ -39,7 +39,7 @@ static int keep(struct brc_context *ctx, struct brc_converge_record *r,
 /* Takes a whole line apart in its place; false when it is not one of ours. */
 static bool read_line(char *line, int n_results, struct brc_converge_run *run)
 {
-    char *column[N_COLUMNS + BRC_MAX_RESULTS], *end = line;
+    char *column[N_COLUMNS + BRC_MAX_RESULTS] = {NULL}, *end = line;
     int n = 0, n_wanted = N_COLUMNS + n_results;
     for (char *at = line; at && n < n_wanted; n++) {
         column[n] = at;
@@ -48,7 +48,7 @@ static bool read_line(char *line, int n_results, struct brc_converge_run *run)
             *at++ = '\0';
         end = at;
     }
-    if (n < n_wanted || end)
+    if (n < N_COLUMNS || n < n_wanted || end)
         return false;
     *run = (struct brc_converge_run){.key = strtoull(column[0], &end, 16),
                                      .steps = strtoll(column[5], NULL, 10),
