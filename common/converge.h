@@ -128,7 +128,8 @@ extern const double brc_converge_within[2]; /* 1 % and 5 % */
 
 void brc_converge_judge(const struct brc_converge_study *study, int model,
                         struct brc_converge_report *out);
-/* Chance and the reference's uncertainty together are smaller than this error. */
+/* Its error is smaller than this, with chance and the reference's uncertainty counted against it.
+ */
 bool brc_converge_is_shown(const struct brc_converge_report *r, int i, double error);
 void brc_converge_print(FILE *out, const struct brc_converge_study *study,
                         const struct brc_converge_report *report);

@@ -45,8 +45,8 @@ static const char *percent(double part, bool is_signed, char text[TEXT_SIZE])
 
 bool brc_converge_is_shown(const struct brc_converge_report *r, int i, double error)
 {
-    double se = r->row[i].error.deviation;
-    return isfinite(se) && hypot(se, r->uncertainty) <= error;
+    const struct brc_converge_error *e = &r->row[i].error;
+    return fabs(e->mean) + hypot(e->deviation, r->uncertainty) <= error;
 }
 
 static void put_row(FILE *out, const struct brc_converge_report *r, int i, struct brc_shown shown,
@@ -191,8 +191,9 @@ static void put_cheapest(FILE *out, const struct brc_converge_report *r)
         const struct brc_converge_row *row = &r->row[r->cheapest[k]];
         fprintf(out, "%s %s, %.0f steps, %s s%s\n", row->setting->axis, row->setting->label,
                 row->steps, digits(row->cpu_s, cpu),
-                brc_converge_is_shown(r, r->cheapest[k], within) ? ""
-                                                                 : "; uncertain by more than that");
+                brc_converge_is_shown(r, r->cheapest[k], within)
+                    ? ""
+                    : "; its uncertainty reaches beyond");
     }
 }
 
@@ -222,7 +223,7 @@ void brc_converge_print(FILE *out, const struct brc_converge_study *study,
     fputs("\nerror: mean over the specimens against the reference; +-: its standard error; one: "
           "rms on "
           "one specimen\n"
-          "?: the error is not known to that part; as written: the case itself\n",
+          "?: its uncertainty reaches beyond; as written: the case itself\n",
           out);
 }
 

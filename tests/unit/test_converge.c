@@ -150,6 +150,8 @@ static void test_judge(void **state)
     assert_int_equal(report.cheapest[1], 6);
     assert_false(brc_converge_is_shown(&report, 4, 0.01));
     assert_true(brc_converge_is_shown(&report, 4, 0.05));
+    assert_false(brc_converge_is_shown(&report, 6, 0.05));
+    assert_true(brc_converge_is_shown(&report, 6, 0.07));
     /* a rung that lost a run has no error, and spoils what is coarser */
     snprintf(settings[5].run[1].ended_by, sizeof settings[5].run[1].ended_by, "failure");
     brc_converge_judge(&study, 0, &report);
