@@ -11,6 +11,15 @@
 #define BRC_VERSION "0.1.0"
 #define BRC_PI      3.14159265358979323846
 
+/* An option that a scene may leave off. `make bench` builds the library once more with BRC_BARE, in
+ * which options are off as it is compiled, to measure what they cost when they are off as it runs.
+ */
+#ifdef BRC_BARE
+#define BRC_OPTION(is_on) ((void)(is_on), false)
+#else
+#define BRC_OPTION(is_on) (is_on)
+#endif
+
 struct brc_context;  /* errors, log, ranks: error.h */
 struct brc_params;   /* list of parameters: params.h */
 struct brc_table;    /* arrays declared by a field list: fields.h */

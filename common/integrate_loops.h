@@ -64,7 +64,7 @@ struct push {
 BRC_LANES_INLINE void add_damping(const struct brc_sim *sim, brc_mask live, double dt,
                                   const struct push *p, struct kick_sums *sums)
 {
-    if (!sim->run.ledger)
+    if (!BRC_OPTION(sim->run.ledger))
         return;
     sums->damping -= brc_lanes_where(live, 0.5 * dt * brc_lanes_dot(p->d, p->old));
     sums->damping_ahead -= brc_lanes_where(live, 0.5 * dt * brc_lanes_dot(p->d, p->now));
@@ -78,7 +78,7 @@ BRC_LANES_INLINE void push_of(const struct brc_sim *sim, double (*v)[3], double 
     brc_lanes_at3(p->f, f);
     for (int k = 0; k < 3; k++)
         p->d[k] = brc_lanes_all(0);
-    if (sim->damping_alpha > 0)
+    if (BRC_OPTION(sim->damping_alpha > 0))
         local_damping(sim, p->d, p->f, p->old); /* eq:vgcm:4 */
 }
 

@@ -224,7 +224,7 @@ static void measure_platens(struct brc_sim *sim)
 int brc_rig_step(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
-    if (rig->n_platens == 0)
+    if (!BRC_OPTION(rig->n_platens > 0))
         return 0;
     measure_platens(sim);
     rig->strain += rig->rate * sim->dt;

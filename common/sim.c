@@ -291,7 +291,7 @@ void brc_sim_free(struct brc_sim *sim)
 static void add_gravity_work(struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
-    if (brc_norm2(sim->run.gravity) == 0)
+    if (!BRC_OPTION(brc_norm2(sim->run.gravity) > 0))
         return;
     for (size_t i = 0; i < b->n_grains; i++)
         sim->ledger.gravity += b->true_mass[i] * brc_dot(sim->run.gravity, b->v[i]) * sim->dt;
@@ -315,7 +315,7 @@ int brc_sim_step(struct brc_sim *sim)
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
         return brc_blowup_number(sim);
-    if (sim->events.table.n > events)
+    if (BRC_OPTION(sim->events.table.n > events))
         BRC_TRY(sim->model.after_break(sim, sim->state, events));
     if (sim->step % TIDY_STEPS == 0) {
         BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->pairs));

@@ -84,7 +84,7 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
     brc_copy(event.n, r->n);
     c->status[row] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);
-    if (sim->run.ledger) {
+    if (BRC_OPTION(sim->run.ledger)) {
         sim->ledger.damage += event.energy;
         sim->ledger.bond -= event.energy;
     }
@@ -243,7 +243,7 @@ static bool come_apart(struct poly_block *block, int32_t i, size_t p, double pat
     if (points->weight[p] > 0 && law.mu > 0 && law.kt > 0) {
         struct poly_motion m;
         poly_start_motion(&m, sim, block->a[i], block->b[i]);
-        poly_release(sim->run.ledger ? &sim->ledger : NULL, &law, &m, points->xi[p],
+        poly_release(BRC_OPTION(sim->run.ledger) ? &sim->ledger : NULL, &law, &m, points->xi[p],
                      points->weight[p]);
     }
     points->weight[p] = 0;
@@ -439,7 +439,7 @@ static void store_row(struct poly_block *block, int32_t i, bool viscous)
     }
     c->gap[row] = g->gap[lane];
     poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
-    if (!sim->run.ledger)
+    if (!BRC_OPTION(sim->run.ledger))
         return;
     for (int k = 0; k < 3; k++) {
         rows->normal_old[row][k] = g->normal.f[k][lane];

@@ -502,9 +502,9 @@ static struct poly_kernels choose_kernels(const struct brc_sim *sim)
         {{points_000, points_000}, {points_010, points_010}},
         {{points_100, points_101}, {points_110, points_111}}};
     const struct poly_params *p = poly_params_of(sim);
-    bool friction = p->mu > 0 && p->kt > 0, ledger = sim->run.ledger;
-    bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
-    return (struct poly_kernels){.motion = p->torsion ? motion_torsion : motion,
+    bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
+    bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
+    return (struct poly_kernels){.motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
                                  .touch = p->features == POLY_MERGED ? touch_merged : touch,
                                  .points = points[friction][viscous][ledger],
                                  .finish = !ledger   ? finish

@@ -39,7 +39,7 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
     struct brc_contacts *c = &sim->platens;
     const struct poly_points *points = c->point_columns;
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
-    struct brc_ledger *ledger = sim->run.ledger ? &sim->ledger : NULL;
+    struct brc_ledger *ledger = BRC_OPTION(sim->run.ledger) ? &sim->ledger : NULL;
     double mass = sim->bodies.true_mass[c->a[row]];
     struct poly_spring_law law = {.kn = poly_pair_stiffness(p->kn, p->kn),
                                   .kt = poly_pair_stiffness(p->kt, p->kt),
@@ -70,7 +70,7 @@ void poly_walls(struct brc_sim *sim, void *state)
     struct poly_state *st = state;
     const struct poly_params *p = poly_params_of(sim);
     struct brc_contacts *c = &sim->platens;
-    bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
+    bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
     const struct poly_rows *rows = c->model_columns;
     for (size_t row = 0; row < c->n; row++) {
         if (poly_is_awake(sim, c, row) && poly_list_wall(sim, st, row) != 0)
@@ -92,7 +92,7 @@ void poly_walls(struct brc_sim *sim, void *state)
             points_row(sim, st, row, &s, &m, viscous);
         poly_finish_row(c, row, &s, &hold, &m);
         poly_store_k(c, row, s.k);
-        if (sim->run.ledger)
+        if (BRC_OPTION(sim->run.ledger))
             poly_account(&sim->ledger, rows, row, &s, &hold, &m, viscous);
     }
 }

@@ -144,8 +144,9 @@ static void select_loops(struct brc_sim *sim, void *state)
 {
     struct vgcm_state *own = state;
     vgcm_law_of(&own->law, sim->params);
-    own->flags = (own->law.is_brittle ? VGCM_BRITTLE : 0) | (sim->run.ledger ? VGCM_LEDGER : 0) |
-                 (own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC ? VGCM_VISCOUS : 0);
+    own->flags =
+        (own->law.is_brittle ? VGCM_BRITTLE : 0) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
+        (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
     switch (brc_simd_of(sim->run.simd)) {
     case BRC_SIMD_AVX512:
         own->forces = vgcm_forces_avx512[own->flags];
