@@ -96,11 +96,15 @@ struct poly_block {
 
 /* What is done four at a time. */
 typedef void poly_kernel(struct poly_block *block);
+typedef int poly_list_kernel(struct brc_context *ctx, struct poly_list *l,
+                             const struct poly_pair *p, enum poly_rule rule, double skin,
+                             double *allowance);
 struct poly_kernels {
-    poly_kernel *motion; /* motion and bonds of the rows */
-    poly_kernel *touch;  /* the work lists */
-    poly_kernel *points; /* forces of the touches */
-    poly_kernel *finish; /* sums of the rows, their works */
+    poly_list_kernel *list; /* poly_list_features */
+    poly_kernel *motion;    /* motion and bonds of the rows */
+    poly_kernel *touch;     /* the work lists */
+    poly_kernel *points;    /* forces of the touches */
+    poly_kernel *finish;    /* sums of the rows, their works */
 };
 /* kernels.h for each instruction set: the kernels for the options of a simulation. */
 struct poly_kernels poly_kernels_base(const struct brc_sim *sim);

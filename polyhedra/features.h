@@ -29,10 +29,9 @@ static inline int32_t *poly_remembered(struct poly_feature *f)
 struct poly_list {
     struct poly_feature *feature;
     size_t n, cap;
-    double *height; /* work space: planes by vertices */
-    size_t cap_height;
-    bool *near;
-    size_t cap_near;
+    double *work; /* work space of listing.h */
+    int32_t *edge;
+    size_t cap_work, cap_edge;
 };
 
 /* Two bodies in space. */
@@ -52,6 +51,9 @@ int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct pol
  * bodies may come nearer before another pair could touch. */
 int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
                        enum poly_rule rule, double skin, double *allowance);
+/* Path of q before it can touch a face of the core c. */
+double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3],
+                         enum poly_rule rule, double rest);
 /* Relative path of the bodies before a listed pair that is apart can touch; right for paths up to
  * `most`. Not for the vertices of `merged`, whose touch says it. */
 double poly_free_path(const struct poly_pair *p, const struct poly_feature *f, enum poly_rule rule,

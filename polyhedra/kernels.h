@@ -4,7 +4,7 @@
 #ifndef POLY_KERNELS_H
 #define POLY_KERNELS_H
 
-#include "polyhedra/touches.h"
+#include "polyhedra/listing.h"
 
 #include <string.h>
 
@@ -496,6 +496,13 @@ KERNEL(points_110, points_kernel(block, true, true, false))
 KERNEL(points_111, points_kernel(block, true, true, true))
 #undef KERNEL
 
+__attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_list *l,
+                                         const struct poly_pair *p, enum poly_rule rule,
+                                         double skin, double *allowance)
+{
+    return list_features(ctx, l, p, rule, skin, allowance);
+}
+
 static struct poly_kernels choose_kernels(const struct brc_sim *sim)
 {
     static poly_kernel *const points[2][2][2] = {
@@ -504,7 +511,8 @@ static struct poly_kernels choose_kernels(const struct brc_sim *sim)
     const struct poly_params *p = poly_params_of(sim);
     bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
     bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
-    return (struct poly_kernels){.motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
+    return (struct poly_kernels){.list = list,
+                                 .motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
                                  .touch = p->features == POLY_MERGED ? touch_merged : touch,
                                  .points = points[friction][viscous][ledger],
                                  .finish = !ledger   ? finish

@@ -361,8 +361,8 @@ int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
     struct poly_pair pair;
     double allowance;
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
-    BRC_TRY(poly_list_features(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
-                               POLY_LIST_SKIN * params->radius, &allowance));
+    BRC_TRY(st->kernels.list(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
+                             POLY_LIST_SKIN * params->radius, &allowance));
     rows->wake[row] = sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] + allowance;
     rows->room[row] = allowance;
     return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);

@@ -224,20 +224,56 @@ BRC_LANES_INLINE brc_lanes foot_weight(brc_lanes t, brc_lanes length, double ell
     return w0 * w1;
 }
 
-/* Four crossing edge pairs, as struct poly_crossing; ra and rb are r . a and r . b of struct
- * poly_lines with unit a and b, r2 is r . r. */
+/* Four edge pairs, as struct poly_lines and struct poly_crossing; ra and rb are r . a and r . b
+ * with the unit directions a and b, r2 is r . r. */
 struct crossings {
+    brc_lanes m[3], m2, rm; /* of edges as they are */
     brc_lanes a[3], b[3], c, sin2, ta, tb, la, lb, ra, rb, r2;
 };
+
+/* poly_cross_lines and poly_cross_edges; returns where both feet are inside edges that cross. */
+BRC_LANES_INLINE brc_mask cross_lines(struct crossings *x, brc_lanes p[4][3])
+{
+    brc_lanes r[3];
+    sub(x->a, p[1], p[0]);
+    sub(x->b, p[3], p[2]);
+    sub(r, p[2], p[0]);
+    brc_lanes_cross(x->m, x->a, x->b);
+    brc_lanes la2 = brc_lanes_dot(x->a, x->a), lb2 = brc_lanes_dot(x->b, x->b),
+              m2 = brc_lanes_dot(x->m, x->m);
+    brc_lanes c = brc_lanes_dot(x->a, x->b), ra = brc_lanes_dot(r, x->a),
+              rb = brc_lanes_dot(r, x->b);
+    brc_lanes ta = ra * lb2 - c * rb, tb = c * ra - rb * la2;
+    brc_mask inside = brc_lanes_less(POLY_PARALLEL * la2 * lb2, m2) & positive(ta) &
+                      brc_lanes_less(ta, m2) & positive(tb) & brc_lanes_less(tb, m2);
+    x->rm = brc_lanes_dot(r, x->m);
+    x->r2 = brc_lanes_dot(r, r);
+    x->la = brc_lanes_sqrt(la2);
+    x->lb = brc_lanes_sqrt(lb2);
+    brc_lanes per_a = 1 / x->la, per_b = 1 / x->lb, per_m = 1 / m2;
+    x->m2 = m2;
+    scale(x->a, x->a, per_a);
+    scale(x->b, x->b, per_b);
+    x->c = c * per_a * per_b;
+    x->sin2 = m2 * (per_a * per_a) * (per_b * per_b);
+    x->ta = ta * per_m * x->la;
+    x->tb = tb * per_m * x->lb;
+    x->ra = ra * per_a;
+    x->rb = rb * per_b;
+    return inside;
+}
 
 BRC_LANES_INLINE brc_lanes clamp(brc_lanes x, brc_lanes high)
 {
     return brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), high);
 }
 
-/* path_to_end of features.c at u along an edge of which sign points out; t is along the other edge,
- * ru and rt are r . unit direction of the one and the other, r from its start to that of the other.
- */
+/* The path that may bring the foot of the common perpendicular on an edge to its end, at u along it
+ * with sign pointing out, which the foot is beyond. With unit directions a (out of this end) and b
+ * (of the other edge), and r from the end to a point of the other edge, the foot is beyond the end
+ * while r . out > 0, where out = a - (a . b) b. A relative path of the bodies by s, which turns
+ * them by at most s / reach, changes r by at most s and out by at most s / reach. ru and rt are
+ * products of both directions with the vector from the edge's start to that of the other one. */
 BRC_LANES_INLINE brc_lanes path_to_end(const struct crossings *x, brc_lanes u, double sign,
                                        brc_lanes ru, brc_lanes rt, brc_lanes length,
                                        brc_lanes reach, double skin)
@@ -249,16 +285,20 @@ BRC_LANES_INLINE brc_lanes path_to_end(const struct crossings *x, brc_lanes u, d
     return out / (brc_lanes_sqrt(x->sin2) + (far + skin) / reach);
 }
 
-/* path_to_edges of features.c: by the gap, or by how far the feet are beyond the ends. */
-BRC_LANES_INLINE brc_lanes path_to_edges(const struct crossings *x, brc_lanes reach, double rest,
-                                         double skin)
+/* Distance of the closed edges. */
+BRC_LANES_INLINE brc_lanes gap_of_edges(const struct crossings *x)
 {
-    const brc_lanes none = brc_lanes_all(0);
     brc_lanes s = clamp(x->ta, x->la), t = clamp(s * x->c - x->rb, x->lb);
     s = clamp(t * x->c + x->ra, x->la);
     brc_lanes gap2 = x->r2 + s * s + t * t + 2 * (t * x->rb - s * x->ra - s * t * x->c);
-    brc_lanes path = brc_lanes_sqrt(brc_lanes_max(gap2, none)) - rest;
-    path = brc_lanes_max(path, path_to_end(x, none, -1, x->ra, x->rb, x->lb, reach, skin));
+    return brc_lanes_sqrt(brc_lanes_max(gap2, brc_lanes_all(0)));
+}
+
+/* Relative path that may bring both feet inside their edges. */
+BRC_LANES_INLINE brc_lanes path_to_inside(const struct crossings *x, brc_lanes reach, double skin)
+{
+    const brc_lanes none = brc_lanes_all(0);
+    brc_lanes path = path_to_end(x, none, -1, x->ra, x->rb, x->lb, reach, skin);
     path = brc_lanes_max(path, path_to_end(x, x->la, 1, x->ra, x->rb, x->lb, reach, skin));
     path = brc_lanes_max(path, path_to_end(x, none, -1, -x->rb, -x->ra, x->la, reach, skin));
     return brc_lanes_max(path, path_to_end(x, x->lb, 1, -x->rb, -x->ra, x->la, reach, skin));
@@ -291,33 +331,14 @@ BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_
                                       const bool merged)
 {
     struct crossings x;
-    brc_lanes r[3], m[3];
-    sub(x.a, p[1], p[0]);
-    sub(x.b, p[3], p[2]);
-    sub(r, p[2], p[0]);
-    brc_lanes_cross(m, x.a, x.b);
-    brc_lanes la2 = brc_lanes_dot(x.a, x.a), lb2 = brc_lanes_dot(x.b, x.b),
-              m2 = brc_lanes_dot(m, m);
-    brc_lanes c = brc_lanes_dot(x.a, x.b), ra = brc_lanes_dot(r, x.a), rb = brc_lanes_dot(r, x.b);
-    brc_lanes rm = brc_lanes_dot(r, m), ta = ra * lb2 - c * rb, tb = c * ra - rb * la2;
-    brc_mask touches = brc_lanes_less(POLY_PARALLEL * la2 * lb2, m2) & positive(ta) &
-                       brc_lanes_less(ta, m2) & positive(tb) & brc_lanes_less(tb, m2) &
-                       brc_lanes_less(rm * rm, block->rest * block->rest * m2);
-    x.la = brc_lanes_sqrt(la2);
-    x.lb = brc_lanes_sqrt(lb2);
-    brc_lanes per_a = 1 / x.la, per_b = 1 / x.lb, per_m = 1 / m2, root_m = brc_lanes_sqrt(per_m);
-    scale(x.a, x.a, per_a);
-    scale(x.b, x.b, per_b);
-    x.c = c * per_a * per_b;
-    x.sin2 = m2 * (per_a * per_a) * (per_b * per_b);
-    x.ta = ta * per_m * x.la;
-    x.tb = tb * per_m * x.lb;
-    brc_lanes d = rm * root_m;
+    brc_mask inside = cross_lines(&x, p);
+    brc_mask touches = inside & brc_lanes_less(x.rm * x.rm, block->rest * block->rest * x.m2);
+    brc_lanes root_m = brc_lanes_sqrt(1 / x.m2), d = x.rm * root_m;
     brc_lanes met = brc_lanes_pick(positive(-d), brc_lanes_all(-1), brc_lanes_all(1));
     *side = brc_lanes_pick(positive(brc_lanes_abs(*side)), *side, met);
     d *= *side;
-    scale(t->n, m, root_m * *side); /* eq:gt12:3 */
-    t->delta = block->rest - d;     /* eq:gt12:5 */
+    scale(t->n, x.m, root_m * *side); /* eq:gt12:3 */
+    t->delta = block->rest - d;       /* eq:gt12:5 */
     for (int k = 0; k < 3; k++)
         t->x[k] = p[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
     full_weight(t);
@@ -325,10 +346,8 @@ BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_
         weigh_crossing(t, &x, block->ell, d);
     touches &= positive(t->weight);
     if (brc_lanes_any(~touches)) {
-        x.ra = ra * per_a;
-        x.rb = rb * per_b;
-        x.r2 = brc_lanes_dot(r, r);
-        brc_lanes path = path_to_edges(&x, reach, block->rest, block->skin);
+        brc_lanes path =
+            brc_lanes_max(gap_of_edges(&x) - block->rest, path_to_inside(&x, reach, block->skin));
         t->delta = brc_lanes_pick(touches, t->delta, -path);
     }
     return touches;
