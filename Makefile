@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # breccia: `make help` lists the targets. Sources are found by pattern; a folder with a model.c is a
-# contact model. CFG=release|debug|san picks the configuration; release builds into build/.
+# contact model. CFG=release|bare|debug|san picks the configuration; release builds into build/.
 
 CFG   ?= release
 BUILD := build$(if $(filter release,$(CFG)),,/$(CFG))
@@ -58,6 +58,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wpointer-arith -Wcast-qual 
 WARNINGS_C := -Wno-psabi -Wno-c11-c2x-compat -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 WARNINGS_CXX := -Wmissing-declarations
 FLAGS_release := -O2 -g
+# all options off as it is compiled: what they cost when they are off as it runs is the difference
+FLAGS_bare    := -O2 -g -DBRC_BARE
 FLAGS_debug   := -O0 -g -DBRC_DEBUG
 FLAGS_san     := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer -fsanitize=address,undefined \
                  -fno-sanitize-recover=all
@@ -65,7 +67,7 @@ FLAGS_san     := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer -fsanitize=address,u
 FLAGS_fuzz    := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer
 FUZZ_FLAGS    := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 ifeq ($(FLAGS_$(CFG)),)
-$(error CFG=$(CFG) is unknown; known are release, debug, san and fuzz)
+$(error CFG=$(CFG) is unknown; known are release, bare, debug, san and fuzz)
 endif
 ifeq ($(CFG),fuzz)
 CC       := clang
@@ -114,6 +116,7 @@ $(BUILD)/obj/%.cpp.o: %.cpp $(BUILD)/flags
 $(BUILD)/obj/common/registry.c.o: $(BUILD)/registry_list.h
 # loops that are compiled for each instruction set
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_release := -O3 -g
+%_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_bare := -O3 -g -DBRC_BARE
 
 $(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
 	@echo "ar   $@"
@@ -215,7 +218,10 @@ hard: all $(HARD_PROGRAMS) ## hard cases of numerical stability, into docs/stabi
 	@tests/hard/run $(HARD_PROGRAMS)
 converge: all ## what accuracy costs: the demo's tests, into docs/speed-and-error.md; goes on where it was stopped
 	@JOBS=$(JOBS) docs/make-converge $(PROGRAM)
-bench: all $(BENCH_PROGRAMS) ## times of the hot loops
+build/bench/tools: .ci/deps
+	@mkdir -p $(@D); .ci/deps bench $@
+bench: all $(BENCH_PROGRAMS) build/bench/tools ## times of the hot loops, costs of options, the machine's limits
+	@+$(MAKE) --no-print-directory CFG=bare build/bare/tests/bench/bench_options
 	@for program in $(BENCH_PROGRAMS); do $$program || exit 1; done
 
 # --- lint: each check leaves a mark, so that only what has changed is checked again ----------------

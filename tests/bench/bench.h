@@ -77,7 +77,7 @@ struct bench_value {
 /* Lines of the file that name other values: one value takes one line. */
 static inline char *bench_others(const char *name)
 {
-    char wanted[128], line[1024], *text = calloc(1, 1);
+    char wanted[256], line[1024], *text = calloc(1, 1);
     size_t size = 0;
     snprintf(wanted, sizeof wanted, "\"name\": \"%s\"", name);
     FILE *file = fopen(BENCH_FILE, "r");
