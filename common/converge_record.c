@@ -69,7 +69,8 @@ static int read_old(struct brc_context *ctx, struct brc_converge_record *r, cons
     for (bool is_first = true; fgets(line, sizeof line, r->file); is_first = false) {
         struct brc_converge_run run;
         size_t n = strlen(line);
-        if (n == 0 || line[n - 1] != '\n')
+        bool is_whole = n > 0 && line[n - 1] == '\n';
+        if (!is_whole && feof(r->file))
             break;
         if (is_first && strcmp(line, header) != 0)
             BRC_FAIL(
@@ -77,8 +78,9 @@ static int read_old(struct brc_context *ctx, struct brc_converge_record *r, cons
                 "%s holds other results than this case has; replace it with --force, or choose "
                 "another folder with -o",
                 r->path);
-        line[n - 1] = '\0';
-        if (!is_first && !read_line(line, r->n_results, &run))
+        if (is_whole)
+            line[n - 1] = '\0';
+        if (!is_whole || (!is_first && !read_line(line, r->n_results, &run)))
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "%s: cannot read the line '%.40s...'; remove it, or replace all with --force",
                      r->path, line);

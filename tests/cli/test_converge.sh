@@ -99,6 +99,12 @@ values() {
 # a record of another test, and one that is damaged
 expect 3 "holds other results" "$breccia" converge case.yaml --set test.kind=brazilian --seeds 1 \
     -o all --resume
+size=$(wc -c <all/converge_runs.csv)
+{ head -c 5000 /dev/zero | tr '\0' x; echo; } | cat all/converge_runs.csv - before.csv >long
+cp long all/converge_runs.csv
+expect 3 "cannot read the line 'xxx" "$breccia" converge case.yaml --seeds 1 -o all --resume
+[ "$(wc -c <all/converge_runs.csv)" -gt $((size + 5000)) ] || fail "a damaged record is cut"
+cp before.csv all/converge_runs.csv
 echo nonsense >>all/converge_runs.csv
 expect 3 "cannot read the line 'nonsense" "$breccia" converge case.yaml --seeds 1 -o all --resume
 
