@@ -19,6 +19,21 @@ struct vgcm_motion {
     brc_lanes du[VGCM_N_MOTION]; /* increments of the generalised displacement */
 };
 
+/* Point j of a row with the shear stiffness ks [N/m], where its row has no field of its own. */
+static inline struct vgcm_point vgcm_point_at(const struct vgcm_points *p, size_t j, double un,
+                                              double ks)
+{
+    return (struct vgcm_point){.un = un, .fs = ks * p->slip_s[j], .ft = ks * p->slip_t[j], .dn = 1};
+}
+
+static inline void vgcm_point_put(const struct vgcm_points *p, size_t j, double ks,
+                                  const struct vgcm_point *q)
+{
+    double inv = ks > 0 ? 1 / ks : 0;
+    p->slip_s[j] = inv * q->fs;
+    p->slip_t[j] = inv * q->ft;
+}
+
 /* First of the four rows among which row i is treated. */
 static inline size_t vgcm_block(size_t i)
 {
@@ -85,8 +100,8 @@ VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct br
 }
 
 /* Opening and slips of the affine field u at the places (s, t). */
-VGCM_INLINE void vgcm_motion_at(brc_lanes at[3], const brc_lanes u[VGCM_N_MOTION], brc_lanes s,
-                                brc_lanes t)
+VGCM_INLINE void vgcm_motion_at(brc_wide at[3], const brc_wide u[VGCM_N_MOTION], brc_wide s,
+                                brc_wide t)
 {
     at[0] = u[VGCM_OPEN] - u[VGCM_BEND_T] * s + u[VGCM_BEND_S] * t; /* eq:vgcm:9 eq:vgcm:11 */
     at[1] = u[VGCM_S] - u[VGCM_TWIST] * t;
@@ -95,8 +110,8 @@ VGCM_INLINE void vgcm_motion_at(brc_lanes at[3], const brc_lanes u[VGCM_N_MOTION
 
 /* Adds the points' normal forces (tension positive) and shear forces on b, the parts of
  * eq:vgcm:10, to the generalised force. */
-VGCM_INLINE void vgcm_force_add(brc_lanes sum[VGCM_N_MOTION], brc_lanes fn, brc_lanes fs,
-                                brc_lanes ft, brc_lanes s, brc_lanes t)
+VGCM_INLINE void vgcm_force_add(brc_wide sum[VGCM_N_MOTION], brc_wide fn, brc_wide fs, brc_wide ft,
+                                brc_wide s, brc_wide t)
 {
     sum[VGCM_OPEN] += fn; /* eq:vgcm:20 */
     sum[VGCM_S] += fs;

@@ -2,11 +2,25 @@
 /* Energy and springs recomputed from the state alone. */
 #include "vgcm/contact.h"
 
-/* State of point j of a row, with its normal force [N]. */
-static struct vgcm_point point_of(const struct vgcm_points *p, const struct vgcm_bond *bond,
-                                  size_t j, int flags)
+/* State of point j of row i with its forces [N]. */
+static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgcm_bond *bond,
+                                  size_t i, size_t j, int flags)
 {
-    struct vgcm_point q = {p->un[j], 0, p->fs[j], p->ft[j], p->dn[j], p->ds[j], p->lost[j]};
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    const double *u = vgcm_columns(c)->u[i];
+    double ks = bond->ks * p->area[j];
+    struct vgcm_point q = vgcm_point_at(p, j, c->gap[i], ks);
+    if (vgcm_columns(c)->phase[i] != VGCM_SPHERE) {
+        brc_wide at[3], field[VGCM_N_MOTION];
+        for (int k = 0; k < VGCM_N_MOTION; k++)
+            field[k] = brc_wide_all(u[k]);
+        vgcm_motion_at(at, field, brc_wide_all(p->s[j]), brc_wide_all(p->t[j]));
+        q.un = at[0][0];
+        q.fs -= ks * at[1][0];
+        q.ft -= ks * at[2][0];
+        q.dn = p->dn[j];
+        q.ds = p->ds[j];
+    }
     q.fn = vgcm_law_normal(bond, flags, p->area[j], &q);
     return q;
 }
@@ -36,9 +50,7 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
         return;
     }
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        struct vgcm_point q = point_of(p, &bond, j, flags);
-        if (f->phase[i] == VGCM_SPHERE)
-            q.fn = fmin(bond.kn * p->area[j] * c->gap[i], 0), q.un = c->gap[i], q.dn = 1;
+        struct vgcm_point q = point_of(c, &bond, i, j, flags);
         bool is_bond = vgcm_law_damage(&q) < 1;
         double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->area[j], &q);
         stored[is_bond ? 0 : 1] += normal;
@@ -55,7 +67,7 @@ static void add_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
     double kn = vgcm_columns(c)->kn[i];
     struct vgcm_bond bond = {.law = law, .kn = kn, .ks = law->eta * kn};
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        struct vgcm_point q = {.un = p->un[j], .fs = p->fs[j], .ft = p->ft[j]};
+        struct vgcm_point q = vgcm_point_at(p, j, p->un[j], bond.ks * p->area[j]);
         if (is_grip || q.un < 0)
             stored[1] += 0.5 * kn * p->area[j] * q.un * q.un;
         stored[2] += shear_energy(&bond, p->area[j], &q);

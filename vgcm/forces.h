@@ -4,74 +4,7 @@
 #ifndef VGCM_FORCES_H
 #define VGCM_FORCES_H
 
-#include "vgcm/contact.h"
-
-struct loop {
-    struct brc_sim *sim;
-    const struct vgcm_law *law;
-    struct brc_contacts *c;
-    struct vgcm_contacts *f;
-    struct vgcm_points *p;
-};
-
-/* What the ledger gets, four sums side by side [J]. */
-struct booked {
-    struct vgcm_energy_lanes points;
-    brc_lanes affine, viscous; /* stored by affine contacts; dissipated by viscous forces */
-};
-
-/* What the points of four rows add up to: one row's four partial sums each. */
-struct row_sums {
-    brc_lanes force[VGCM_N_MOTION][BRC_LANES], drag[VGCM_N_MOTION][BRC_LANES];
-    brc_lanes opening[BRC_LANES]; /* m, the smallest */
-};
-
-/* ---- viscous forces ------------------------------------------------------------------------ */
-
-/* Viscosity per area of rows i to i + 3, over dt: force = this times area times increment. */
-VGCM_INLINE brc_lanes drag_of(const struct loop *l, size_t i)
-{
-    brc_lanes c = brc_lanes_all(0);
-    double dt = l->sim->dt;
-    const double *mass = l->sim->bodies.true_mass;
-    for (int k = 0; k < BRC_LANES; k++) {
-        double ma = mass[l->c->a[i + k]], mb = mass[l->c->b[i + k]];
-        c[k] =
-            dt > 0 ? l->law->viscous * ma * mb / (ma + mb) / (l->f->moment[i + k][VGCM_A] * dt) : 0;
-    }
-    return c;
-}
-
-/* Adds the viscous part to the generalised forces of the rows of the mask, and its dissipation to
- * what is booked. */
-VGCM_INLINE void add_drag(struct loop *l, size_t i, int flags, brc_mask rows,
-                          const brc_lanes du[VGCM_N_MOTION], const brc_lanes drag[VGCM_N_MOTION],
-                          brc_lanes sum[VGCM_N_MOTION], brc_lanes *viscous)
-{
-    brc_lanes old[VGCM_N_MOTION], mean[VGCM_N_MOTION], now[VGCM_N_MOTION];
-    brc_lanes_at6(old, l->f->drag + i);
-    for (int k = 0; k < VGCM_N_MOTION; k++) {
-        mean[k] = 0.5 * (old[k] + drag[k]);
-        now[k] = brc_lanes_pick(rows, drag[k], old[k]);
-        sum[k] += brc_lanes_where(rows, drag[k]);
-    }
-    brc_lanes_put6(l->f->drag + i, now);
-    if (flags & VGCM_LEDGER)
-        *viscous += brc_lanes_where(rows, vgcm_force_work(mean, du));
-}
-
-/* Viscous force of four points. A broken point that is open has none, and one that is closed is
- * never pulled by it. */
-VGCM_INLINE void point_drag(brc_lanes drag[VGCM_N_MOTION], brc_lanes c, const brc_lanes du[3],
-                            const struct vgcm_point_lanes *q, brc_lanes s, brc_lanes t)
-{
-    brc_mask broken = ~vgcm_lanes_whole(vgcm_lanes_damage(q));
-    brc_mask acts = ~broken | brc_lanes_less(q->un, brc_lanes_all(0));
-    brc_lanes fn = c * du[0];
-    fn = brc_lanes_pick(broken, brc_lanes_min(fn, -q->fn), fn);
-    vgcm_force_add(drag, brc_lanes_where(acts, fn), brc_lanes_where(acts, -c * du[1]),
-                   brc_lanes_where(acts, -c * du[2]), s, t);
-}
+#include "vgcm/batch.h"
 
 /* ---- affine rows --------------------------------------------------------------------------- */
 
@@ -80,18 +13,19 @@ static bool points_hold(const struct loop *l, size_t i, const double u[VGCM_N_MO
 {
     const struct vgcm_law *law = l->law;
     double kn = l->f->kn[i], ks = law->eta * kn;
-    brc_lanes field[VGCM_N_MOTION];
+    brc_wide field[VGCM_N_MOTION];
     for (int k = 0; k < VGCM_N_MOTION; k++)
-        field[k] = brc_lanes_all(u[k]);
-    for (int32_t k = 0; k < l->c->np[i]; k += BRC_LANES) {
+        field[k] = brc_wide_all(u[k]);
+    for (int32_t k = 0; k < l->c->np[i]; k += BRC_WIDE) {
         size_t j = (size_t)(l->c->p0[i] + k);
-        brc_lanes at[3];
-        vgcm_motion_at(at, field, brc_lanes_at(l->p->s + j), brc_lanes_at(l->p->t + j));
-        brc_lanes limit = law->tau - law->mu * kn * at[0];
-        brc_mask fails = brc_lanes_less(brc_lanes_all(law->sigma_t), kn * at[0]) |
-                         brc_lanes_less(limit, brc_lanes_all(0)) |
-                         brc_lanes_less(limit * limit, ks * ks * (at[1] * at[1] + at[2] * at[2]));
-        if (brc_lanes_any(fails & brc_lanes_first(l->c->np[i] - k)))
+        brc_wide at[3];
+        vgcm_motion_at(at, field, brc_wide_at(l->p->s + j), brc_wide_at(l->p->t + j));
+        brc_wide limit = law->tau - law->mu * kn * at[0];
+        brc_wide_mask fails =
+            brc_wide_less(brc_wide_all(law->sigma_t), kn * at[0]) |
+            brc_wide_less(limit, brc_wide_all(0)) |
+            brc_wide_less(limit * limit, ks * ks * (at[1] * at[1] + at[2] * at[2]));
+        if (brc_wide_any(brc_wide_both(fails, brc_wide_first(l->c->np[i] - k))))
             return false;
     }
     return true;
@@ -123,44 +57,26 @@ VGCM_INLINE brc_mask affine_fails(const struct loop *l, size_t i, brc_mask rows,
     return fails;
 }
 
-/* Gives each point its own state, that of the affine field so far. */
-static __attribute__((noinline)) void leave_affine(const struct loop *l, size_t i)
-{
-    double ks = l->law->eta * l->f->kn[i], *u = l->f->u[i];
-    for (size_t j = (size_t)l->c->p0[i], end = j + (size_t)l->c->np[i]; j < end; j++) {
-        double s = l->p->s[j], t = l->p->t[j];
-        l->p->un[j] = u[VGCM_OPEN] - u[VGCM_BEND_T] * s + u[VGCM_BEND_S] * t;
-        l->p->fs[j] = -ks * l->p->area[j] * (u[VGCM_S] - u[VGCM_TWIST] * t);
-        l->p->ft[j] = -ks * l->p->area[j] * (u[VGCM_T] + u[VGCM_TWIST] * s);
-    }
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        u[k] = 0;
-    l->f->phase[i] = VGCM_POINTS;
-}
-
-/* The rows of the mask as affine fields: generalised forces and openings. Rows in which a point
+/* The rows of the mask as affine fields: generalised forces of the field u. Rows in which a point
  * leaves the elastic range become rows of points and are taken out of the mask. */
 VGCM_INLINE brc_mask affine_rows(struct loop *l, size_t i, int flags, brc_mask rows,
-                                 const struct vgcm_motion *m, brc_lanes sum[VGCM_N_MOTION],
-                                 brc_lanes *opening, struct booked *booked)
+                                 const struct vgcm_motion *m, const brc_lanes u[VGCM_N_MOTION],
+                                 brc_lanes sum[VGCM_N_MOTION], struct booked *booked)
 {
-    brc_lanes u[VGCM_N_MOTION], old[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
+    brc_lanes middle[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
     brc_lanes kn = brc_lanes_at(l->f->kn + i), ks = l->law->eta * kn;
-    brc_lanes_at6(old, l->f->u + i);
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        u[k] = old[k] + m->du[k]; /* eq:vgcm:14 */
     brc_mask fails = affine_fails(l, i, rows, kn, u);
     if (brc_lanes_any(fails)) {
         for (int k = 0; k < BRC_LANES; k++)
             if (fails[k])
-                leave_affine(l, i + (size_t)k);
+                l->f->phase[i + (size_t)k] = VGCM_POINTS;
         rows &= ~fails;
     }
     brc_lanes_at6(moment, l->f->moment + i);
     if (flags & VGCM_LEDGER) {
         for (int k = 0; k < VGCM_N_MOTION; k++)
-            old[k] += 0.5 * m->du[k];
-        vgcm_force_affine(sum, kn, ks, moment, old);
+            middle[k] = u[k] - 0.5 * m->du[k];
+        vgcm_force_affine(sum, kn, ks, moment, middle);
         booked->affine += brc_lanes_where(rows, vgcm_force_work(sum, m->du));
     }
     vgcm_force_affine(sum, kn, ks, moment, u); /* eq:vgcm:15 eq:vgcm:17 */
@@ -169,133 +85,7 @@ VGCM_INLINE brc_mask affine_rows(struct loop *l, size_t i, int flags, brc_mask r
         vgcm_force_affine(drag, c, c, moment, m->du);
         add_drag(l, i, flags, rows, m->du, drag, sum, &booked->viscous);
     }
-    *opening = u[VGCM_OPEN];
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        u[k] = brc_lanes_where(rows, u[k]); /* 0 in rows of points */
-    brc_lanes_put6(l->f->u + i, u);
     return rows;
-}
-
-/* ---- rows of points ------------------------------------------------------------------------ */
-
-/* Point j of row i has just broken. */
-static __attribute__((noinline)) void add_event(const struct loop *l, size_t i, size_t j)
-{
-    const struct brc_contacts *c = l->c;
-    double t[3], branch[3], *xa = l->sim->bodies.x[c->a[i]];
-    struct brc_event event = {.a = c->a[i],
-                              .b = c->b[i],
-                              .facet = c->facet[i],
-                              .point = (int32_t)(j - (size_t)c->p0[i]),
-                              .mode =
-                                  l->p->dn[j] >= l->p->ds[j] ? BRC_MODE_TENSION : BRC_MODE_SHEAR,
-                              .area = l->p->area[j],
-                              .energy = l->p->lost[j]};
-    brc_sub(branch, l->sim->bodies.x[c->b[i]], xa);
-    brc_cross(t, l->f->n[i], l->f->s[i]);
-    brc_copy(event.n, l->f->n[i]);
-    brc_copy(event.x, xa);
-    brc_axpy(event.x, 0.5 * brc_norm(branch) + l->f->plane[i], l->f->n[i]);
-    brc_axpy(event.x, l->p->s[j], l->f->s[i]);
-    brc_axpy(event.x, l->p->t[j], t);
-    brc_events_add(l->sim->ctx, &l->sim->events, l->sim->step, &event);
-    bool is_whole = false;
-    for (size_t k = (size_t)c->p0[i], end = k + (size_t)c->np[i]; k < end; k++)
-        is_whole |= l->p->dn[k] + l->p->ds[k] < 1;
-    c->status[i] = is_whole ? BRC_INTACT : BRC_BROKEN;
-}
-
-/* Points j to j + 3 of row i + lane, those of the mask `live`. */
-VGCM_INLINE void step_points(struct loop *l, size_t i, int lane, size_t j, int flags, brc_mask live,
-                             const struct vgcm_bond_lanes *bond,
-                             const brc_lanes move[VGCM_N_MOTION], brc_lanes drag,
-                             struct row_sums *sums, struct booked *booked)
-{
-    struct vgcm_points *p = l->p;
-    brc_lanes s = brc_lanes_at(p->s + j), t = brc_lanes_at(p->t + j), du[3];
-    brc_lanes area = brc_lanes_at(p->area + j);
-    struct vgcm_point_lanes q = {.un = brc_lanes_at(p->un + j),
-                                 .fs = brc_lanes_at(p->fs + j),
-                                 .ft = brc_lanes_at(p->ft + j),
-                                 .dn = brc_lanes_at(p->dn + j),
-                                 .ds = brc_lanes_at(p->ds + j),
-                                 .lost = brc_lanes_at(p->lost + j)};
-    brc_mask was_whole = vgcm_lanes_whole(vgcm_lanes_damage(&q));
-    vgcm_motion_at(du, move, s, t);
-    brc_mask changed = vgcm_lanes_step(l->law, bond, flags, area, du, &q, &booked->points);
-    brc_lanes_put(p->un + j, q.un);
-    brc_lanes_put(p->fs + j, q.fs);
-    brc_lanes_put(p->ft + j, q.ft);
-    if (brc_lanes_any(changed & live)) {
-        brc_lanes_put(p->dn + j, q.dn);
-        brc_lanes_put(p->ds + j, q.ds);
-        brc_lanes_put(p->lost + j, q.lost);
-        brc_mask broke = live & was_whole & ~vgcm_lanes_whole(vgcm_lanes_damage(&q));
-        for (int k = 0; k < BRC_LANES; k++)
-            if (broke[k])
-                add_event(l, i + (size_t)lane, j + (size_t)k);
-    }
-    brc_lanes force[VGCM_N_MOTION];
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        force[k] = sums->force[k][lane];
-    vgcm_force_add(force, q.fn, q.fs, q.ft, s, t);
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        sums->force[k][lane] = force[k];
-    if (flags & VGCM_VISCOUS) {
-        for (int k = 0; k < VGCM_N_MOTION; k++)
-            force[k] = sums->drag[k][lane];
-        point_drag(force, drag * area, du, &q, s, t);
-        for (int k = 0; k < VGCM_N_MOTION; k++)
-            sums->drag[k][lane] = force[k];
-    }
-    brc_lanes opening = brc_lanes_pick(live, q.un, brc_lanes_all(HUGE_VAL));
-    sums->opening[lane] = brc_lanes_min(sums->opening[lane], opening);
-}
-
-VGCM_INLINE void points_row(struct loop *l, size_t i, int lane, int flags,
-                            const struct vgcm_bond_lanes *bonds,
-                            const brc_lanes moves[VGCM_N_MOTION], brc_lanes drags,
-                            struct row_sums *sums, struct booked *booked)
-{
-    const struct vgcm_bond_lanes bond = {
-        brc_lanes_all(bonds->kn[lane]), brc_lanes_all(bonds->ks[lane]),
-        brc_lanes_all(bonds->u0[lane]), brc_lanes_all(bonds->wn[lane]),
-        brc_lanes_all(bonds->ws[lane])};
-    brc_lanes move[VGCM_N_MOTION], drag = brc_lanes_all(drags[lane]);
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        move[k] = brc_lanes_all(moves[k][lane]);
-    size_t first = (size_t)l->c->p0[i + (size_t)lane];
-    int32_t n = l->c->np[i + (size_t)lane];
-    for (int32_t k = 0; k < n; k += BRC_LANES)
-        step_points(l, i, lane, first + (size_t)k, flags, brc_lanes_first(n - k), &bond, move, drag,
-                    sums, booked);
-}
-
-/* Adds the rows of the mask by their points to the generalised forces and openings. */
-VGCM_INLINE void points_rows(struct loop *l, size_t i, int flags, brc_mask rows,
-                             const struct vgcm_motion *m, brc_lanes sum[VGCM_N_MOTION],
-                             brc_lanes *opening, struct booked *booked)
-{
-    struct vgcm_bond_lanes bonds;
-    struct row_sums sums;
-    brc_lanes drag = flags & VGCM_VISCOUS ? drag_of(l, i) : brc_lanes_all(0);
-    vgcm_lanes_bond(&bonds, l->law, brc_lanes_at(l->f->kn + i));
-    for (int lane = 0; lane < BRC_LANES; lane++) {
-        for (int k = 0; k < VGCM_N_MOTION; k++)
-            sums.force[k][lane] = sums.drag[k][lane] = brc_lanes_all(0);
-        sums.opening[lane] = brc_lanes_all(HUGE_VAL);
-        if (rows[lane])
-            points_row(l, i, lane, flags, &bonds, m->du, drag, &sums, booked);
-    }
-    for (int k = 0; k < VGCM_N_MOTION; k++)
-        sum[k] = brc_lanes_pick(rows, brc_lanes_sums(sums.force[k]), sum[k]);
-    *opening = brc_lanes_pick(rows, brc_lanes_mins(sums.opening), *opening);
-    if (flags & VGCM_VISCOUS) {
-        brc_lanes all[VGCM_N_MOTION];
-        for (int k = 0; k < VGCM_N_MOTION; k++)
-            all[k] = brc_lanes_sums(sums.drag[k]);
-        add_drag(l, i, flags, rows, m->du, all, sum, &booked->viscous);
-    }
 }
 
 /* ---- rows of spheres ----------------------------------------------------------------------- */
@@ -314,17 +104,19 @@ static void sphere_forces(struct loop *l, size_t i, int flags, struct vgcm_energ
     brc_set(l->f->n[i], m.n[0][lane], m.n[1][lane], m.n[2][lane]);
     brc_set(l->f->s[i], m.s[0][lane], m.s[1][lane], m.s[2][lane]);
     double du[3] = {m.du[VGCM_OPEN][lane], m.du[VGCM_S][lane], m.du[VGCM_T][lane]};
-    struct vgcm_point q = {c->gap[i] - du[0], 0, l->p->fs[j], l->p->ft[j], 1, 0, 0};
-    vgcm_law_step(&bond, flags & ~VGCM_BRITTLE, area, du, &q, energy);
-    l->p->un[j] = q.un;
-    l->p->fs[j] = q.fs;
-    l->p->ft[j] = q.ft;
-    vgcm_force_add(sum, brc_lanes_all(q.fn), brc_lanes_all(q.fs), brc_lanes_all(q.ft), none, none);
+    struct vgcm_point q = vgcm_point_at(l->p, j, c->gap[i] - du[0], bond.ks * area);
+    vgcm_law_rub(&bond, area, du, &q, energy);
+    vgcm_point_put(l->p, j, bond.ks * area, &q);
+    sum[VGCM_OPEN] = brc_lanes_all(q.fn);
+    sum[VGCM_S] = brc_lanes_all(q.fs);
+    sum[VGCM_T] = brc_lanes_all(q.ft);
     if (flags & VGCM_VISCOUS) {
-        brc_lanes drag[VGCM_N_MOTION] = {none};
-        struct vgcm_point_lanes all = {.un = brc_lanes_all(q.un), .fn = brc_lanes_all(q.fn)};
-        all.dn = brc_lanes_all(1);
-        point_drag(drag, drag_of(l, first) * area, m.du, &all, none, none);
+        brc_lanes drag[VGCM_N_MOTION] = {none}, c_area = drag_of(l, first) * area;
+        brc_mask closed = brc_lanes_less(brc_lanes_all(q.un), none);
+        brc_lanes pull = brc_lanes_min(c_area * m.du[VGCM_OPEN], brc_lanes_all(-q.fn));
+        drag[VGCM_OPEN] = brc_lanes_where(closed, pull);
+        drag[VGCM_S] = brc_lanes_where(closed, -c_area * m.du[VGCM_S]);
+        drag[VGCM_T] = brc_lanes_where(closed, -c_area * m.du[VGCM_T]);
         add_drag(l, first, flags,
                  brc_lanes_first((int64_t)lane + 1) & ~brc_lanes_first((int64_t)lane), m.du, drag,
                  sum, viscous);
@@ -347,7 +139,6 @@ static __attribute__((noinline)) void sphere_row(struct loop *l, size_t i, int f
                                                  struct booked *booked)
 {
     struct brc_contacts *c = l->c;
-    struct vgcm_energy energy = {0};
     double branch[3], gap_old = c->gap[i];
     brc_sub(branch, l->sim->bodies.x[c->b[i]], l->sim->bodies.x[c->a[i]]);
     c->gap[i] = brc_norm(branch) - l->f->rest[i];
@@ -358,72 +149,160 @@ static __attribute__((noinline)) void sphere_row(struct loop *l, size_t i, int f
         brc_normalise(l->f->n[i], branch);
         brc_frame(l->f->s[i], t, l->f->n[i]);
     }
-    sphere_forces(l, i, flags, &energy, &booked->viscous);
-    booked->points.normal[0] += energy.normal;
-    booked->points.shear[0] += energy.shear;
-    booked->points.friction[0] += energy.friction;
+    sphere_forces(l, i, flags, &booked->spheres, &booked->viscous);
 }
 
 /* ---- all rows ------------------------------------------------------------------------------ */
 
-VGCM_INLINE void facet_rows(struct loop *l, size_t i, int flags, brc_mask facet, brc_mask affine,
-                            struct booked *booked)
+/* The fields of the facets after the step, and their frames. */
+VGCM_INLINE void move_facets(const struct loop *l, size_t i, brc_mask facet,
+                             const struct vgcm_motion *m, brc_lanes u[VGCM_N_MOTION])
 {
-    struct vgcm_motion m;
-    brc_lanes old[3], sum[VGCM_N_MOTION] = {brc_lanes_all(0)}, opening = brc_lanes_all(0);
-    vgcm_motion_of(&l->sim->bodies, l->c, i, l->sim->dt, &m);
+    brc_lanes old[3];
     brc_lanes_at3(old, l->f->n + i);
     for (int k = 0; k < 3; k++)
-        old[k] = brc_lanes_pick(facet, m.n[k], old[k]);
+        old[k] = brc_lanes_pick(facet, m->n[k], old[k]);
     brc_lanes_put3(l->f->n + i, old);
     brc_lanes_at3(old, l->f->s + i);
     for (int k = 0; k < 3; k++)
-        old[k] = brc_lanes_pick(facet, m.s[k], old[k]);
+        old[k] = brc_lanes_pick(facet, m->s[k], old[k]);
     brc_lanes_put3(l->f->s + i, old);
-    if (brc_lanes_any(affine))
-        affine = affine_rows(l, i, flags, affine, &m, sum, &opening, booked);
-    brc_mask points = facet & ~affine;
-    if (brc_lanes_any(points))
-        points_rows(l, i, flags, points, &m, sum, &opening, booked);
+    brc_lanes_at6(u, l->f->u + i);
     for (int k = 0; k < VGCM_N_MOTION; k++)
-        sum[k] = brc_lanes_where(facet, sum[k]);
-    vgcm_force_apply(l->c, i, &m, sum);
-    brc_lanes_put(l->c->gap + i, brc_lanes_pick(facet, opening, brc_lanes_at(l->c->gap + i)));
+        u[k] += brc_lanes_where(facet, m->du[k]); /* eq:vgcm:14 */
+    brc_lanes_put6(l->f->u + i, u);
 }
 
-VGCM_INLINE void forces_loop(struct brc_sim *sim, const struct vgcm_law *law, const int flags)
+VGCM_INLINE void fetch_lines(const void *at, size_t size)
+{
+    for (size_t k = 0; k < size; k += 64)
+        __builtin_prefetch((const char *)at + k);
+}
+
+/* Asks for what the rows AHEAD of row i will want: with points they have more columns than machines
+ * follow by themselves. What tells where the points are is wanted twice as early. */
+VGCM_INLINE void fetch_ahead(const struct loop *l, size_t i)
+{
+    const struct brc_contacts *c = l->c;
+    const struct vgcm_contacts *f = l->f;
+    const struct vgcm_points *p = l->p;
+    size_t k = i + AHEAD, far = k + AHEAD;
+    if (far + BRC_LANES > c->n || !brc_lanes_any(brc_lanes_equal(f->phase + k, VGCM_POINTS)))
+        return;
+    const int32_t *const numbers[] = {c->a, c->b, c->p0, c->np};
+    const double *const scalars[] = {f->kn, f->plane, f->rim, c->gap};
+    double(*const vectors[])[3] = {f->n, f->s, c->f, c->ta, c->tb};
+    const double *const places[] = {p->s,  p->t,      p->area,   p->dn,
+                                    p->ds, p->slip_s, p->slip_t, p->lost};
+    for (int m = 0; m < 4; m++)
+        fetch_lines(numbers[m] + far, BRC_LANES * sizeof(int32_t));
+    for (int m = 0; m < 4; m++)
+        fetch_lines(scalars[m] + k, BRC_LANES * sizeof(double));
+    for (int m = 0; m < 5; m++)
+        fetch_lines(vectors[m] + k, BRC_LANES * sizeof *vectors[m]);
+    fetch_lines(f->u + k, BRC_LANES * sizeof *f->u);
+    fetch_lines(f->moment + k, BRC_LANES * sizeof *f->moment);
+    for (size_t row = k; row < k + BRC_LANES; row++)
+        for (int m = 0; f->phase[row] == VGCM_POINTS && m < 8; m++)
+            fetch_lines(places[m] + c->p0[row], BRC_EIGHT * sizeof(double));
+}
+
+/* Moves a block of rows, and forms the forces of its affine ones. */
+VGCM_INLINE void begin_block(struct loop *l, size_t i, int flags, brc_mask facet, brc_mask affine,
+                             struct batch *batch, struct booked *booked)
+{
+    struct block *b = &batch->block[batch->n_blocks++];
+    b->i = i;
+    b->facet = facet;
+    fetch_ahead(l, i);
+    vgcm_motion_of(&l->sim->bodies, l->c, i, l->sim->dt, &b->m);
+    move_facets(l, i, facet, &b->m, b->u);
+    for (int k = 0; k < VGCM_N_MOTION; k++)
+        b->sum[k] = brc_lanes_all(0);
+    b->opening = b->u[VGCM_OPEN];
+    if (brc_lanes_any(affine))
+        affine = affine_rows(l, i, flags, affine, &b->m, b->u, b->sum, booked);
+    b->points = facet & ~affine;
+    if (brc_lanes_any(b->points))
+        list_items(l, flags, batch, b, booked);
+}
+
+VGCM_INLINE void finish_block(struct loop *l, int flags, struct block *b, struct booked *booked)
+{
+    double *gap = l->c->gap + b->i;
+    if (brc_lanes_any(b->points))
+        sum_points(l, flags, b, booked);
+    for (int k = 0; k < VGCM_N_MOTION; k++)
+        b->sum[k] = brc_lanes_where(b->facet, b->sum[k]);
+    vgcm_force_apply(l->c, b->i, &b->m, b->sum);
+    brc_lanes_put(gap, brc_lanes_pick(b->facet, b->opening, brc_lanes_at(gap)));
+}
+
+VGCM_INLINE void finish_batch(struct loop *l, int flags, struct batch *batch, struct booked *booked)
+{
+    if (batch->n_items > 0)
+        l->items(l, batch, booked);
+    for (int k = 0; k < batch->n_blocks; k++)
+        finish_block(l, flags, &batch->block[k], booked);
+    batch->n_blocks = 0;
+}
+
+/* One term of the points' energies. */
+VGCM_INLINE double booked_of(const struct booked *booked, size_t term)
+{
+    brc_wide halves[BRC_HALVES];
+    for (int k = 0; k < BRC_HALVES; k++)
+        halves[k] = *(const brc_wide *)((const char *)&booked->points[k] + term);
+    return brc_lanes_sum(brc_wide_fold(halves, 1));
+}
+
+#define POINTS(term) booked_of(&booked, offsetof(struct vgcm_energy_wide, term))
+
+VGCM_INLINE void forces_loop(struct brc_sim *sim, const struct vgcm_law *law, const int flags,
+                             void (*items)(struct loop *, struct batch *, struct booked *))
 {
     struct loop l = {.sim = sim,
+                     .items = items,
                      .law = law,
                      .c = &sim->pairs,
                      .f = vgcm_columns(&sim->pairs),
                      .p = vgcm_point_columns(&sim->pairs)};
-    struct booked booked = {.affine = brc_lanes_all(0)};
+    struct booked booked = {.spheres = {0}};
+    struct batch batch;
+    batch.n_blocks = batch.n_items = 0;
     for (size_t i = 0; i < l.c->n; i += BRC_LANES) {
         brc_mask inside = brc_lanes_first((int64_t)(l.c->n - i));
         brc_mask facet = inside & ~brc_lanes_equal(l.f->phase + i, VGCM_SPHERE);
         brc_mask affine = inside & brc_lanes_equal(l.f->phase + i, VGCM_AFFINE);
         if (brc_lanes_any(facet))
-            facet_rows(&l, i, flags, facet, affine, &booked);
-        if (brc_lanes_any(inside & ~facet))
-            for (size_t k = i; k < i + BRC_LANES && k < l.c->n; k++)
-                if (l.f->phase[k] == VGCM_SPHERE)
-                    sphere_row(&l, k, flags, &booked);
+            begin_block(&l, i, flags, facet, affine, &batch, &booked);
+        if (batch.n_blocks == BLOCKS || i + BRC_LANES >= l.c->n)
+            finish_batch(&l, flags, &batch, &booked);
     }
+    for (size_t i = 0; i < l.c->n; i++)
+        if (l.f->phase[i] == VGCM_SPHERE)
+            sphere_row(&l, i, flags, &booked);
     if (flags & VGCM_LEDGER) {
-        sim->ledger.bond += brc_lanes_sum(booked.points.bond) + brc_lanes_sum(booked.affine);
-        sim->ledger.contact_normal += brc_lanes_sum(booked.points.normal);
-        sim->ledger.contact_shear += brc_lanes_sum(booked.points.shear);
-        sim->ledger.damage += brc_lanes_sum(booked.points.damage);
-        sim->ledger.friction += brc_lanes_sum(booked.points.friction);
+        const struct vgcm_energy *spheres = &booked.spheres;
+        sim->ledger.bond += POINTS(bond) + brc_lanes_sum(booked.affine);
+        sim->ledger.contact_normal += POINTS(normal) + spheres->normal;
+        sim->ledger.contact_shear += POINTS(shear) + spheres->shear;
+        sim->ledger.damage += POINTS(damage);
+        sim->ledger.friction += POINTS(friction) + spheres->friction;
         sim->ledger.viscous += brc_lanes_sum(booked.viscous);
     }
 }
 
-#define LOOP(n)                                                             \
-    static void forces_##n(struct brc_sim *sim, const struct vgcm_law *law) \
-    {                                                                       \
-        forces_loop(sim, law, n);                                           \
+#undef POINTS
+#define LOOP(n)                                                                          \
+    static __attribute__((noinline)) void items_##n(struct loop *l, struct batch *batch, \
+                                                    struct booked *booked)               \
+    {                                                                                    \
+        step_items(l, n, batch, booked);                                                 \
+    }                                                                                    \
+    static void forces_##n(struct brc_sim *sim, const struct vgcm_law *law)              \
+    {                                                                                    \
+        forces_loop(sim, law, n, items_##n);                                             \
     }
 LOOP(0)
 LOOP(1)

@@ -8,7 +8,7 @@
 #ifndef VGCM_LAW_H
 #define VGCM_LAW_H
 
-#include "common/lanes.h"
+#include "common/wide.h"
 
 /* for functions that are called with literal flags: the loops shed what the flags turn off */
 #define VGCM_INLINE BRC_LANES_INLINE
@@ -49,17 +49,36 @@ struct vgcm_energy {
     double bond, normal, shear, damage, friction;
 };
 
-/* The same for four bonds, points and sums side by side: the law is written for these. */
-struct vgcm_bond_lanes {
-    brc_lanes kn, ks, u0, wn, ws;
+/* What the law wants to know of a bond, without a division left for its points. */
+enum vgcm_bond_parts {
+    VGCM_U0,      /* m, opening at the tensile strength */
+    VGCM_PER_WN,  /* 1/m, damage per opening past it */
+    VGCM_WN_U0,   /* wn/u0 */
+    VGCM_E0,      /* m, elastic slip at the shear strength */
+    VGCM_PER_WS,  /* 1/m, damage per slip past it */
+    VGCM_HALF_KN, /* Pa/m, half the stiffnesses: energy per area and square of a displacement */
+    VGCM_HALF_KS,
+    VGCM_N_BOND
 };
 
-struct vgcm_point_lanes {
-    brc_lanes un, fn, fs, ft, dn, ds, lost;
+/* Points side by side, eight or one half of eight: the law is written for these, in three parts
+ * that hand on what is listed here. Forces are those per area and stiffness, so that they are
+ * displacements, too. */
+struct vgcm_point_wide {
+    brc_wide dn, ds;         /* damage by opening and by slip */
+    brc_wide slip_s, slip_t; /* m, plastic slip */
+    brc_wide un, un_old;     /* m, opening, before the step */
+    brc_wide damage_old;     /* dn + ds before the step */
+    brc_wide pull_old, pull; /* m, normal force, tension positive */
+    brc_wide secant;         /* m, tension at the peak strength, by the secant */
+    brc_wide s, t;           /* m, trial shear force on b */
+    brc_wide force2, force;  /* m2, m: its square and size */
+    brc_wide part;           /* of it that is left */
 };
 
-struct vgcm_energy_lanes {
-    brc_lanes bond, normal, shear, damage, friction;
+/* What is added up over steps [J]. */
+struct vgcm_energy_wide {
+    brc_wide bond, normal, shear, damage, friction;
 };
 
 /* beta: strength left at the kink (fraction of the peak); w1: its place past the peak in units of
@@ -72,16 +91,21 @@ static inline void vgcm_law_softening(struct vgcm_law *law, double beta, double 
     law->slope[1] = beta / (1 - law->kink);
 }
 
-/* Strength at a damage over the peak strength: 1 at 0, beta at the kink, 0 at 1. */
-VGCM_INLINE brc_lanes vgcm_lanes_strength(const struct vgcm_law *law, brc_lanes damage)
+/* Strength at a damage over the peak strength: 1 at 0, beta at the kink, 0 from 1 on. */
+VGCM_INLINE brc_wide vgcm_wide_strength(const struct vgcm_law *law, int flags, brc_wide damage)
 {
-    return brc_lanes_pick(brc_lanes_less(damage, brc_lanes_all(law->kink)),
-                          1 - law->slope[0] * damage, law->slope[1] * (1 - damage));
+    brc_wide none = brc_wide_all(0), one = brc_wide_all(1);
+    if (flags & VGCM_BRITTLE)
+        return brc_wide_where(brc_wide_less(damage, one), one);
+    brc_wide steep = 1 - law->slope[0] * damage, flat = law->slope[1] - law->slope[1] * damage;
+    brc_wide left =
+        law->slope[1] <= law->slope[0] ? brc_wide_max(steep, flat) : brc_wide_min(steep, flat);
+    return brc_wide_max(left, none);
 }
 
 static inline double vgcm_law_strength(const struct vgcm_law *law, double damage)
 {
-    return vgcm_lanes_strength(law, brc_lanes_all(damage))[0];
+    return vgcm_wide_strength(law, 0, brc_wide_all(damage))[0];
 }
 
 /* Elastic energies at the peak strengths per unit area [J/m2]. */
@@ -95,30 +119,34 @@ static inline double vgcm_law_elastic_s(const struct vgcm_law *law, double kn)
     return law->eta > 0 ? law->tau * law->tau / (2 * law->eta * kn) : 0;
 }
 
-VGCM_INLINE void vgcm_lanes_bond(struct vgcm_bond_lanes *bond, const struct vgcm_law *law,
+/* Of four bonds at a time. Without shear stiffness the strength is out of reach. */
+VGCM_INLINE void vgcm_lanes_bond(brc_lanes bond[VGCM_N_BOND], const struct vgcm_law *law,
                                  brc_lanes kn)
 {
     double per_kn[2] = {law->is_post_peak ? 0 : vgcm_law_elastic_n(law, 1),
                         law->is_post_peak ? 0 : vgcm_law_elastic_s(law, 1)};
-    brc_lanes inv = 1 / kn;
-    bond->kn = kn;
-    bond->ks = law->eta * kn; /* eq:vgcm:29 */
-    bond->u0 = law->sigma_t * inv;
-    bond->wn = law->wc / law->sigma_t * (law->g_fn - per_kn[0] * inv);
-    bond->ws = law->wc / law->tau * (law->g_fs - per_kn[1] * inv);
+    brc_lanes inv = 1 / kn, ks = law->eta * kn; /* eq:vgcm:29 */
+    brc_lanes wn = law->wc / law->sigma_t * (law->g_fn - per_kn[0] * inv);
+    brc_lanes ws = law->wc / law->tau * (law->g_fs - per_kn[1] * inv);
+    bond[VGCM_U0] = law->sigma_t * inv;
+    bond[VGCM_PER_WN] = 1 / wn;
+    bond[VGCM_WN_U0] = wn * (kn * (1 / law->sigma_t));
+    bond[VGCM_E0] = law->eta > 0 ? law->tau / law->eta * inv : brc_lanes_all(1e150);
+    bond[VGCM_PER_WS] = 1 / ws;
+    bond[VGCM_HALF_KN] = 0.5 * kn;
+    bond[VGCM_HALF_KS] = 0.5 * ks;
 }
 
 static inline struct vgcm_bond vgcm_bond_of(const struct vgcm_law *law, double kn)
 {
-    struct vgcm_bond_lanes all;
-    vgcm_lanes_bond(&all, law, brc_lanes_all(kn));
-    return (struct vgcm_bond){
-        .law = law, .kn = kn, .ks = all.ks[0], .u0 = all.u0[0], .wn = all.wn[0], .ws = all.ws[0]};
-}
-
-VGCM_INLINE brc_lanes vgcm_lanes_damage(const struct vgcm_point_lanes *p)
-{
-    return brc_lanes_min(p->dn + p->ds, brc_lanes_all(1));
+    brc_lanes all[VGCM_N_BOND];
+    vgcm_lanes_bond(all, law, brc_lanes_all(kn));
+    return (struct vgcm_bond){.law = law,
+                              .kn = kn,
+                              .ks = law->eta * kn,
+                              .u0 = all[VGCM_U0][0],
+                              .wn = 1 / all[VGCM_PER_WN][0],
+                              .ws = 1 / all[VGCM_PER_WS][0]};
 }
 
 static inline double vgcm_law_damage(const struct vgcm_point *p)
@@ -126,160 +154,161 @@ static inline double vgcm_law_damage(const struct vgcm_point *p)
     return fmin(p->dn + p->ds, 1);
 }
 
-/* Where points of the damage d are not broken. */
-VGCM_INLINE brc_mask vgcm_lanes_whole(brc_lanes d)
+/* Where points of a damage are not broken. */
+VGCM_INLINE brc_wide_mask vgcm_wide_whole(brc_wide damage)
 {
-    return brc_lanes_less(d, brc_lanes_all(1));
+    return brc_wide_less(damage, brc_wide_all(1));
 }
 
-/* Part of the elastic tension that is left at the damage d: tension follows the secant to the
- * strength at the largest opening u0 + dn wn. */
-VGCM_INLINE brc_lanes vgcm_lanes_left(const struct vgcm_law *law,
-                                      const struct vgcm_bond_lanes *bond, int flags, brc_lanes dn,
-                                      brc_lanes d)
+/* Normal force: tension falls with the strength, compression is never weakened. */
+VGCM_INLINE brc_wide vgcm_wide_pull(brc_wide un, brc_wide secant, brc_wide strength)
 {
-    brc_lanes left = brc_lanes_all(1);
-    if (!(flags & VGCM_BRITTLE))
-        left = bond->u0 / (bond->u0 + dn * bond->wn) * vgcm_lanes_strength(law, d); /* eq:vgcm:32 */
-    return brc_lanes_where(vgcm_lanes_whole(d), left);
+    brc_wide weak = secant * strength; /* eq:vgcm:32 */
+    return brc_wide_pick(brc_wide_less(brc_wide_all(0), un), weak, un);
 }
 
-/* Normal force over area [Pa]: compression is never weakened. */
-VGCM_INLINE brc_lanes vgcm_lanes_normal(const struct vgcm_bond_lanes *bond, brc_lanes un,
-                                        brc_lanes left)
+/* Shear strength [m] under a normal force. */
+VGCM_INLINE brc_wide vgcm_wide_limit(const struct vgcm_law *law, brc_wide e0, brc_wide pull,
+                                     brc_wide strength)
 {
-    brc_lanes elastic = bond->kn * un;
-    return brc_lanes_pick(brc_lanes_less(brc_lanes_all(0), un), elastic * left, elastic);
+    double mu = law->eta > 0 ? law->mu / law->eta : 0;
+    brc_wide limit = e0 * strength - mu * pull; /* eq:vgcm:33 */
+    return brc_wide_max(limit, brc_wide_all(0));
 }
 
-/* Shear strength [N] under the normal force fn at the damage d. */
-VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, int flags, brc_lanes area,
-                                       brc_lanes fn, brc_lanes d)
+/* Damage grows with the opening past the largest so far; tension follows the secant to the strength
+ * at the largest. One division serves the secants before and now. */
+VGCM_INLINE void vgcm_wide_open(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
+                                int flags, struct vgcm_point_wide *p)
 {
-    brc_lanes left = flags & VGCM_BRITTLE ? brc_lanes_where(vgcm_lanes_whole(d), brc_lanes_all(1))
-                                          : vgcm_lanes_strength(law, d);
-    brc_lanes limit = law->tau * left * area - law->mu * fn; /* eq:vgcm:33 */
-    return brc_lanes_max(limit, brc_lanes_all(0));
-}
-
-/* Opening by dun: eqs 14, 15, 17 with the secant; damage grows past the largest opening so far.
- * left: see vgcm_lanes_left, of the state before on entry. Returns where the damage grew. */
-VGCM_INLINE brc_mask vgcm_lanes_open(const struct vgcm_law *law, const struct vgcm_bond_lanes *bond,
-                                     int flags, brc_lanes area, brc_lanes dun,
-                                     struct vgcm_point_lanes *p, brc_lanes *left)
-{
-    p->un += dun; /* eq:vgcm:14 */
-    brc_mask grew =
-        vgcm_lanes_whole(vgcm_lanes_damage(p)) & brc_lanes_less(bond->u0 + p->dn * bond->wn, p->un);
-    if (brc_lanes_any(grew)) {
-        brc_lanes dn = flags & VGCM_BRITTLE ? brc_lanes_all(1) : (p->un - bond->u0) / bond->wn;
-        p->dn = brc_lanes_pick(grew, brc_lanes_max(dn, p->dn), p->dn);
-        *left = vgcm_lanes_left(law, bond, flags, p->dn, vgcm_lanes_damage(p));
+    brc_wide strength = vgcm_wide_strength(law, flags, p->damage_old), old = p->un_old;
+    brc_wide_mask whole = vgcm_wide_whole(p->damage_old);
+    p->secant = p->un;
+    if (flags & VGCM_BRITTLE) {
+        brc_wide_mask grew = brc_wide_less(bond[VGCM_U0], p->un);
+        p->dn = brc_wide_pick(brc_wide_both(grew, whole), brc_wide_all(1), p->dn);
+    } else {
+        brc_wide dn = (p->un - bond[VGCM_U0]) * bond[VGCM_PER_WN];
+        dn = brc_wide_pick(whole, brc_wide_max(dn, p->dn), p->dn);
+        brc_wide before = 1 + p->dn * bond[VGCM_WN_U0], after = 1 + dn * bond[VGCM_WN_U0];
+        brc_wide inv = 1 / (before * after);
+        old *= inv * after;
+        p->secant *= inv * before;
+        p->dn = dn;
     }
-    p->fn = area * vgcm_lanes_normal(bond, p->un, *left); /* eq:vgcm:17 */
-    return grew;
+    p->pull_old = vgcm_wide_pull(p->un_old, old, strength);
 }
 
 /* Shear: trial force, then back to the strength, which falls with the slip. In terms of the
  * displacement past the peak the damage grows by excess/(ks ws) on both branches, because
- * ks (slip) = ks ws dD + tau (fall of the strength). Returns where the force was cut. */
-VGCM_INLINE brc_mask vgcm_lanes_slide(const struct vgcm_law *law,
-                                      const struct vgcm_bond_lanes *bond, int flags, brc_lanes area,
-                                      const brc_lanes du[3], struct vgcm_point_lanes *p)
+ * ks (slip) = ks ws dD + tau (fall of the strength). Forms the normal force, too. */
+VGCM_INLINE void vgcm_wide_slide(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
+                                 int flags, struct vgcm_point_wide *p)
 {
-    brc_lanes k = bond->ks * area, d = vgcm_lanes_damage(p);
-    p->fs -= k * du[1]; /* eq:vgcm:16, eq:vgcm:18 */
-    p->ft -= k * du[2];
-    brc_lanes limit = vgcm_lanes_limit(law, flags, area, p->fn, d);
-    brc_lanes force2 = p->fs * p->fs + p->ft * p->ft;
-    brc_mask cut = brc_lanes_less(limit * limit, force2), weakened = cut & vgcm_lanes_whole(d);
-    if (!brc_lanes_any(cut))
-        return cut;
-    brc_lanes force = brc_lanes_sqrt(force2);
-    if (brc_lanes_any(weakened)) {
-        brc_lanes ds =
-            flags & VGCM_BRITTLE ? brc_lanes_all(1) : p->ds + (force - limit) / (k * bond->ws);
-        p->ds = brc_lanes_pick(weakened, ds, p->ds);
-        d = vgcm_lanes_damage(p);
-        limit = vgcm_lanes_limit(law, flags, area, p->fn, d);
-        brc_lanes left = vgcm_lanes_left(law, bond, flags, p->dn, d);
-        p->fn = area * vgcm_lanes_normal(bond, p->un, left);
-    }
-    brc_lanes part = brc_lanes_pick(cut, limit / force, brc_lanes_all(1));
-    p->fs *= part;
-    p->ft *= part;
-    return cut;
+    brc_wide force = brc_wide_sqrt(p->force2), inv = 1 / force, e0 = bond[VGCM_E0];
+    brc_wide damage = p->dn + p->ds, strength = vgcm_wide_strength(law, flags, damage);
+    brc_wide limit = vgcm_wide_limit(law, e0, vgcm_wide_pull(p->un, p->secant, strength), strength);
+    brc_wide_mask cut = brc_wide_less(limit, force);
+    brc_wide_mask weakened = brc_wide_both(cut, vgcm_wide_whole(damage));
+    if (flags & VGCM_BRITTLE)
+        p->ds = brc_wide_pick(weakened, brc_wide_all(1), p->ds);
+    else
+        p->ds += brc_wide_where(weakened, (force - limit) * bond[VGCM_PER_WS]);
+    strength = vgcm_wide_strength(law, flags, p->dn + p->ds);
+    p->pull = vgcm_wide_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
+    limit = vgcm_wide_limit(law, e0, p->pull, strength);
+    p->force = force;
+    p->part = brc_wide_pick(cut, limit * inv, brc_wide_all(1));
 }
 
-/* Energies of a step from the state before (old) and the trial shear force's cut; trapezoid rule
- * for each force, see common/ledger.h. */
-VGCM_INLINE void vgcm_lanes_account(const struct vgcm_law *law, const struct vgcm_bond_lanes *bond,
-                                    brc_lanes area, const brc_lanes du[3],
-                                    const struct vgcm_point_lanes *old, struct vgcm_point_lanes *p,
-                                    struct vgcm_energy_lanes *e)
+/* Energies of a step in which some point is broken: what the others keep in their bonds; contact
+ * springs of the broken ones. work, kept: per area, by the normal force and in shear. */
+VGCM_INLINE void vgcm_wide_account_broken(brc_wide_mask was, brc_wide_mask is, brc_wide area,
+                                          brc_wide kept_bond, const brc_wide stored[2],
+                                          const brc_wide old[2], brc_wide work,
+                                          struct vgcm_energy_wide *e)
 {
-    brc_lanes none = brc_lanes_all(0), k = bond->ks * area;
-    brc_lanes inv = brc_lanes_where(brc_lanes_less(none, k), 1 / k);
-    brc_lanes d_old = vgcm_lanes_damage(old), d = vgcm_lanes_damage(p);
-    brc_mask was = vgcm_lanes_whole(d_old), is = vgcm_lanes_whole(d);
-    brc_lanes stored = p->fn * p->un / 2, stored_old = old->fn * old->un / 2;
-    brc_lanes shear = (p->fs * p->fs + p->ft * p->ft) * inv / 2;
-    brc_lanes shear_old = (old->fs * old->fs + old->ft * old->ft) * inv / 2;
-    brc_lanes work = (old->fn + p->fn) / 2 * du[0];
-    brc_lanes loss = brc_lanes_where(brc_lanes_less(d_old, d), work - (stored - stored_old));
-    brc_lanes slip_s = (old->fs - k * du[1] - p->fs) * inv;
-    brc_lanes slip_t = (old->ft - k * du[2] - p->ft) * inv;
-    brc_lanes slid = ((old->fs + p->fs) * slip_s + (old->ft + p->ft) * slip_t) / 2;
-    brc_lanes push = brc_lanes_max(-p->fn, none);
-    brc_lanes rub = law->mu * push * brc_lanes_sqrt(slip_s * slip_s + slip_t * slip_t);
-    rub = brc_lanes_pick(brc_lanes_less(rub, slid), rub, brc_lanes_max(slid, none));
-    rub = brc_lanes_pick(was, rub, slid);
-    p->lost += brc_lanes_where(was, loss + slid);
-    e->damage += loss + slid - rub;
-    e->friction += rub;
-    e->bond += brc_lanes_pick(is, work - loss + shear - shear_old,
-                              brc_lanes_where(was, -(stored_old + shear_old)));
-    e->normal += brc_lanes_where(~is, brc_lanes_pick(was, stored, work));
-    e->shear += brc_lanes_where(~is, shear - brc_lanes_where(~was, shear_old));
+    brc_wide none = brc_wide_all(0);
+    brc_wide gone = brc_wide_where(was, -(old[0] + old[1]));
+    e->bond += area * brc_wide_pick(is, kept_bond, gone);
+    e->normal += area * brc_wide_pick(is, none, brc_wide_pick(was, stored[0], work));
+    e->shear += area * brc_wide_pick(is, none, stored[1] - brc_wide_pick(was, none, old[1]));
 }
 
-/* One step of four points: du = opening and slip along s and t in this step. p holds the state
- * before on entry except fn, which is formed here, and the state after on return. Returns where the
- * damage or the energy lost may have changed. */
-VGCM_INLINE brc_mask vgcm_lanes_step(const struct vgcm_law *law, const struct vgcm_bond_lanes *bond,
-                                     int flags, brc_lanes area, const brc_lanes du[3],
-                                     struct vgcm_point_lanes *p, struct vgcm_energy_lanes *e)
+/* Energies of a step, by the trapezoid rule for each force, see common/ledger.h; ds, dt: its slip.
+ * Returns what points that were whole have lost [J]. */
+VGCM_INLINE brc_wide vgcm_wide_account(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
+                                       int flags, brc_wide area, brc_wide slip_s, brc_wide slip_t,
+                                       const struct vgcm_point_wide *p, struct vgcm_energy_wide *e)
 {
-    struct vgcm_point_lanes old = *p;
-    brc_lanes d_old = vgcm_lanes_damage(p);
-    brc_lanes left_old = vgcm_lanes_left(law, bond, flags, p->dn, d_old), left = left_old;
-    brc_mask changed = vgcm_lanes_open(law, bond, flags, area, du[0], p, &left);
-    changed |= vgcm_lanes_slide(law, bond, flags, area, du, p);
-    changed &= vgcm_lanes_whole(d_old);
-    if ((flags & VGCM_LEDGER) || brc_lanes_any(changed)) {
-        old.fn = area * vgcm_lanes_normal(bond, old.un, left_old);
-        vgcm_lanes_account(law, bond, area, du, &old, p, e);
+    brc_wide none = brc_wide_all(0), half_kn = bond[VGCM_HALF_KN], half_ks = bond[VGCM_HALF_KS];
+    brc_wide damage = p->dn + p->ds;
+    brc_wide_mask was = vgcm_wide_whole(p->damage_old), is = vgcm_wide_whole(damage);
+    brc_wide stored = half_kn * (p->pull * p->un), stored_old = half_kn * (p->pull_old * p->un_old);
+    brc_wide excess = half_kn * (p->pull_old * p->un - p->pull * p->un_old); /* work - stored */
+    brc_wide_mask weakened = brc_wide_both(was, brc_wide_less(p->damage_old, damage));
+    brc_wide loss = brc_wide_where(weakened, excess);
+    /* the plastic slip is along the trial force, of which 1 - part is cut off */
+    brc_wide s_old = p->s + slip_s, t_old = p->t + slip_t;
+    brc_wide off = 1 - p->part, left2 = p->part * p->force2;
+    brc_wide slid = half_ks * (off * (s_old * p->s + t_old * p->t + left2));
+    brc_wide push = brc_wide_max(-p->pull, none);
+    brc_wide rub = (2 * law->mu) * half_kn * (push * (off * p->force));
+    rub = brc_wide_pick(was, brc_wide_min(rub, brc_wide_max(slid, none)), slid);
+    brc_wide lost = area * (loss + slid);
+    if (flags & VGCM_LEDGER) {
+        brc_wide shear = half_ks * (p->part * left2);
+        brc_wide shear_old = half_ks * (s_old * s_old + t_old * t_old);
+        brc_wide kept = stored - stored_old + (excess - loss) + (shear - shear_old);
+        e->damage += lost - area * rub;
+        e->friction += area * rub;
+        if (brc_wide_any(brc_wide_not(is))) {
+            const brc_wide all[2] = {stored, shear}, old[2] = {stored_old, shear_old};
+            vgcm_wide_account_broken(was, is, area, kept, all, old, stored - stored_old + excess,
+                                     e);
+        } else {
+            e->bond += area * kept;
+        }
     }
-    return changed;
+    return brc_wide_where(was, lost);
+}
+
+/* The bond of a contact with ks and the strengths of the law, in each place. */
+static inline void vgcm_wide_bond_of(const struct vgcm_bond *bond, brc_wide all[VGCM_N_BOND])
+{
+    brc_lanes lanes[VGCM_N_BOND];
+    vgcm_lanes_bond(lanes, bond->law, brc_lanes_all(bond->kn));
+    for (int k = 0; k < VGCM_N_BOND; k++)
+        all[k] = brc_wide_all(lanes[k][0]);
 }
 
 /* One point alone. */
 static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double area,
                                  const double du[3], struct vgcm_point *p, struct vgcm_energy *e)
 {
-    const struct vgcm_bond_lanes all = {brc_lanes_all(bond->kn), brc_lanes_all(bond->ks),
-                                        brc_lanes_all(bond->u0), brc_lanes_all(bond->wn),
-                                        brc_lanes_all(bond->ws)};
-    const brc_lanes move[3] = {brc_lanes_all(du[0]), brc_lanes_all(du[1]), brc_lanes_all(du[2])};
-    struct vgcm_point_lanes q = {.un = brc_lanes_all(p->un),
-                                 .fs = brc_lanes_all(p->fs),
-                                 .ft = brc_lanes_all(p->ft),
-                                 .dn = brc_lanes_all(p->dn),
-                                 .ds = brc_lanes_all(p->ds),
-                                 .lost = brc_lanes_all(p->lost)};
-    struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
-    vgcm_lanes_step(bond->law, &all, flags, brc_lanes_all(area), move, &q, &sum);
-    *p = (struct vgcm_point){q.un[0], q.fn[0], q.fs[0], q.ft[0], q.dn[0], q.ds[0], q.lost[0]};
+    double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
+    double s = p->fs * inv - du[1], t = p->ft * inv - du[2]; /* eq:vgcm:16, eq:vgcm:18 */
+    struct vgcm_point_wide q = {.dn = brc_wide_all(p->dn),
+                                .ds = brc_wide_all(p->ds),
+                                .un = brc_wide_all(p->un + du[0]), /* eq:vgcm:14 */
+                                .un_old = brc_wide_all(p->un),
+                                .damage_old = brc_wide_all(p->dn + p->ds),
+                                .s = brc_wide_all(s),
+                                .t = brc_wide_all(t),
+                                .force2 = brc_wide_all(s * s + t * t)};
+    struct vgcm_energy_wide sum = {.bond = brc_wide_all(0)};
+    brc_wide all[VGCM_N_BOND];
+    vgcm_wide_bond_of(bond, all);
+    vgcm_wide_open(bond->law, all, flags, &q);
+    vgcm_wide_slide(bond->law, all, flags, &q);
+    p->lost += vgcm_wide_account(bond->law, all, flags, brc_wide_all(area), brc_wide_all(du[1]),
+                                 brc_wide_all(du[2]), &q, &sum)[0];
+    p->un = q.un[0];
+    p->fn = kn * q.pull[0];
+    p->fs = ks * (q.part[0] * s);
+    p->ft = ks * (q.part[0] * t);
+    p->dn = q.dn[0];
+    p->ds = q.ds[0];
     e->bond += sum.bond[0];
     e->normal += sum.normal[0];
     e->shear += sum.shear[0];
@@ -287,16 +316,36 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
     e->friction += sum.friction[0];
 }
 
+/* One step of one broken point: it pushes and rubs. */
+static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const double du[3],
+                                struct vgcm_point *p, struct vgcm_energy *e)
+{
+    double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
+    double fn_old = kn * fmin(p->un, 0), s_old = p->fs, t_old = p->ft;
+    double s = s_old - ks * du[1], t = t_old - ks * du[2];
+    p->un += du[0];
+    p->fn = kn * fmin(p->un, 0);
+    double limit = -bond->law->mu * p->fn, force2 = s * s + t * t;
+    double part = limit * limit < force2 ? limit / sqrt(force2) : 1;
+    p->fs = part * s;
+    p->ft = part * t;
+    e->normal += 0.5 * (fn_old + p->fn) * du[0];
+    e->shear += 0.5 * inv * (part * part * force2 - (s_old * s_old + t_old * t_old));
+    e->friction += 0.5 * inv * (1 - part) * (s_old * s + t_old * t + part * force2);
+}
+
 /* Normal force of one point [N]. */
 static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags, double area,
                                      const struct vgcm_point *p)
 {
-    const struct vgcm_bond_lanes all = {.kn = brc_lanes_all(bond->kn),
-                                        .u0 = brc_lanes_all(bond->u0),
-                                        .wn = brc_lanes_all(bond->wn)};
-    brc_lanes left = vgcm_lanes_left(bond->law, &all, flags, brc_lanes_all(p->dn),
-                                     brc_lanes_all(vgcm_law_damage(p)));
-    return area * vgcm_lanes_normal(&all, brc_lanes_all(p->un), left)[0];
+    struct vgcm_point_wide q = {.dn = brc_wide_all(p->dn),
+                                .un = brc_wide_all(p->un),
+                                .un_old = brc_wide_all(p->un),
+                                .damage_old = brc_wide_all(p->dn + p->ds)};
+    brc_wide all[VGCM_N_BOND];
+    vgcm_wide_bond_of(bond, all);
+    vgcm_wide_open(bond->law, all, flags, &q);
+    return bond->kn * area * q.pull_old[0];
 }
 
 #endif

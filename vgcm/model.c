@@ -82,12 +82,18 @@ static int check(struct brc_context *ctx, const void *values, const struct brc_s
                         census.largest_distance);
 }
 
+static bool is_busy(const struct brc_contacts *c, size_t row)
+{
+    return vgcm_columns(c)->phase[row] == VGCM_POINTS;
+}
+
 static int create(struct brc_sim *sim, void **state)
 {
     struct vgcm_state *own = brc_alloc(sim->ctx, 1, sizeof *own);
     if (!own)
         return BRC_ERR_MEMORY;
     vgcm_law_of(&own->law, sim->params);
+    sim->pairs.is_busy = is_busy;
     *state = own;
     return 0;
 }
@@ -215,7 +221,7 @@ const struct brc_model brc_model_vgcm = {
     .contact_fields = BRC_FIELDSET(contact_fields, struct vgcm_contacts),
     .point_fields = BRC_FIELDSET(point_fields, struct vgcm_points),
     .flags = BRC_MODEL_ROTATES,
-    .point_lanes = BRC_LANES,
+    .point_lanes = BRC_EIGHT,
     .shape = shape,
     .bond = bond,
     .pairs = pairs,

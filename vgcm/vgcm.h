@@ -54,9 +54,9 @@ struct vgcm_bodies {
     VGCM_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
 
-/* A row is a sphere contact (new neighbours), or a facet. While no point of a facet has been
- * damaged the displacement of all its points is the affine field u, and nothing is kept per point:
- * exact, not an approximation, as each point's increment is affine in its place. */
+/* A row is a sphere contact (new neighbours), or a facet. The displacement of a facet's points is
+ * the affine field u: exact, not an approximation, as each point's increment is affine in its
+ * place. While no point has been damaged nothing else is kept; then its plastic slip and damage. */
 enum vgcm_phase { VGCM_SPHERE, VGCM_AFFINE, VGCM_POINTS };
 
 /* order of generalised displacements and forces in the contact frame */
@@ -72,7 +72,7 @@ enum { VGCM_A, VGCM_A_S, VGCM_A_T, VGCM_A_SS, VGCM_A_ST, VGCM_A_TT, VGCM_N_MOMEN
     SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0")   \
     VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")     \
     VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")        \
-    VECTOR(double, u, 6, BRC_STATE, "m, 1", "affine: opening, slip s t, turn about n s t")        \
+    VECTOR(double, u, 6, BRC_STATE, "m, 1", "facets: opening, slip s t, turn about n s t")        \
     VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt")   \
     VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")
 
@@ -85,9 +85,9 @@ struct vgcm_contacts {
     SCALAR(double, t, BRC_STATE, "m", "place in the contact plane")                   \
     SCALAR(double, h, BRC_STATE, "m", "platens: height over the centre of a along n") \
     SCALAR(double, area, BRC_STATE, "m2", "area that the point stands for")           \
-    SCALAR(double, un, BRC_STATE, "m", "opening; affine contacts keep u instead")     \
-    SCALAR(double, fs, BRC_STATE, "N", "shear force on b along s")                    \
-    SCALAR(double, ft, BRC_STATE, "N", "shear force on b along t")                    \
+    SCALAR(double, un, BRC_STATE, "m", "platens: opening; facets have it from u")     \
+    SCALAR(double, slip_s, BRC_STATE, "m", "shear force on b along s over k, plus u") \
+    SCALAR(double, slip_t, BRC_STATE, "m", "the same along t: the plastic slip")      \
     SCALAR(double, dn, BRC_STATE, "1", "damage by opening")                           \
     SCALAR(double, ds, BRC_STATE, "1", "damage by slip")                              \
     SCALAR(double, lost, BRC_STATE, "J", "energy dissipated until damage was 1")

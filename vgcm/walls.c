@@ -121,14 +121,13 @@ static void step_point(struct wall *w, size_t i, size_t j, int flags, const doub
     double area = p->area[j], du[3];
     bool is_grip = w->platen->grip != BRC_GRIP_NONE;
     relative_motion(w, r, du);
-    struct vgcm_point q = {un - du[0], 0, p->fs[j], p->ft[j], 1, 0, 0};
+    struct vgcm_point q = vgcm_point_at(p, j, un - du[0], w->bond.ks * area);
     if (is_grip)
         step_grip(w, area, du, &q);
     else
-        vgcm_law_step(&w->bond, flags & ~VGCM_BRITTLE, area, du, &q, &w->energy);
+        vgcm_law_rub(&w->bond, area, du, &q, &w->energy);
     p->un[j] = un;
-    p->fs[j] = q.fs;
-    p->ft[j] = q.ft;
+    vgcm_point_put(p, j, w->bond.ks * area, &q);
     double part[3] = {-q.fn, q.fs, q.ft}; /* eq:vgcm:19 */
     add_force(w, i, part, r);
     if (flags & VGCM_VISCOUS) {

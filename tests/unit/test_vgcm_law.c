@@ -261,6 +261,27 @@ static void broken_points_push_and_rub_only(void **state)
     check_balance(&d);
 }
 
+static void broken_points_follow_their_own_law(void **state)
+{
+    struct vgcm_law law = paper_law();
+    struct drive d = begin(&law, SOFT), own = begin(&law, SOFT);
+    double scale = d.bond.kn * AREA * 1e-6;
+    (void)state;
+    d.p.dn = own.p.dn = 1;
+    for (int i = 0; i < 3000; i++) {
+        const double du[3] = {4e-8 * sin(0.01 * i), 2e-7 * cos(0.003 * i), 1e-7 * sin(0.02 * i)};
+        vgcm_law_step(&d.bond, SOFT, AREA, du, &d.p, &d.e);
+        vgcm_law_rub(&own.bond, AREA, du, &own.p, &own.e);
+        CHECK_NEAR(own.p.fn, d.p.fn, 1e-12 * scale, 1e-12);
+        CHECK_NEAR(own.p.fs, d.p.fs, 1e-12 * scale, 1e-12);
+        CHECK_NEAR(own.p.ft, d.p.ft, 1e-12 * scale, 1e-12);
+    }
+    assert_true(d.e.friction > 0);
+    CHECK_NEAR(own.e.friction, d.e.friction, 0, 1e-11);
+    CHECK_NEAR(own.e.normal, d.e.normal, 1e-12 * d.e.friction, 1e-11);
+    CHECK_NEAR(own.e.shear, d.e.shear, 1e-12 * d.e.friction, 1e-11);
+}
+
 static void no_shear_stiffness_means_no_shear(void **state)
 {
     struct vgcm_law law = paper_law();
@@ -303,6 +324,7 @@ int main(void)
         cmocka_unit_test(damage_is_shared),
         cmocka_unit_test(compression_raises_the_shear_strength),
         cmocka_unit_test(broken_points_push_and_rub_only),
+        cmocka_unit_test(broken_points_follow_their_own_law),
         cmocka_unit_test(no_shear_stiffness_means_no_shear),
         cmocka_unit_test(ledger_does_not_change_the_motion),
     };
