@@ -19,6 +19,10 @@ static const double BYTES = 8 + 1 + 24 + 48 + 2 * 96 + 80 + 72 + 8;
  * field, twice with the ledger 100, forces on the grains 55, their sums 12. */
 static const double OPERATIONS = 382;
 
+/* Pa, strength of the specimen under slow loading: a fixed rate of 2e-7 a step, local damping 0.7
+ * (BENCH_REFERENCE=1 measures it). */
+static const double REFERENCE = 119.26e6;
+
 struct state {
     size_t points, damaged, broken, contacts, rows_of_points;
 };
@@ -43,13 +47,13 @@ static struct state look(const struct brc_sim *sim)
     return s;
 }
 
-static void make(struct brc_context *ctx, struct brc_specimen *specimen, struct brc_sim *sim)
+/* Settings of run and test, "key", "value", ..., NULL. */
+static void make(struct brc_context *ctx, const struct brc_specimen *specimen, struct brc_sim *sim,
+                 const char *const *run, const char *const *test)
 {
-    struct brc_specimen_params s;
     struct vgcm_params p;
     struct brc_test_params t;
     struct brc_run_params r;
-    must(ctx, brc_params_defaults(ctx, brc_specimen_param_list, &s));
     must(ctx, brc_params_defaults(ctx, brc_model_vgcm.params, &p));
     must(ctx, brc_params_defaults(ctx, brc_test_param_list, &t));
     must(ctx, brc_params_defaults(ctx, brc_run_param_list, &r));
@@ -57,7 +61,10 @@ static void make(struct brc_context *ctx, struct brc_specimen *specimen, struct 
     set(ctx, brc_test_param_list, &t, "stop_drop", "0.5");
     if (getenv("BENCH_SIMD"))
         set(ctx, brc_run_param_list, &r, "simd", getenv("BENCH_SIMD"));
-    must(ctx, brc_specimen_create(ctx, &s, specimen));
+    for (; *run; run += 2)
+        set(ctx, brc_run_param_list, &r, run[0], run[1]);
+    for (; *test; test += 2)
+        set(ctx, brc_test_param_list, &t, test[0], test[1]);
     must(ctx, brc_sim_create(ctx, sim, &brc_model_vgcm, &p, specimen, &t, &r));
 }
 
@@ -98,22 +105,19 @@ static double machine_limit(const struct state *s)
     return fmax(bytes, operations);
 }
 
-int main(void)
+static void time_points(struct brc_context *ctx, const struct brc_specimen *specimen)
 {
     static struct bench_times elastic, damaged;
-    struct brc_context ctx = BRC_CONTEXT_INIT;
-    struct brc_specimen specimen;
+    const char *const none[] = {NULL};
     struct brc_sim sim;
-    double total = 0, steps = 0;
-    ctx.quiet = 1;
-    make(&ctx, &specimen, &sim);
+    double total = 0;
+    make(ctx, specimen, &sim, none, none);
     struct state s = look(&sim), half = {0};
     double limit = machine_limit(&s);
     while (elastic.n < ELASTIC_REPEATS)
         bench_note(&elastic, time_steps(&sim, s.points, &total));
     report("vgcm_elastic_ns_point", &elastic, 5, limit);
-    const char *short_run = getenv("BENCH_SHORT");
-    while (!brc_rig_done(&sim) && !short_run) {
+    while (!brc_rig_done(&sim) && !getenv("BENCH_SHORT")) {
         double time = time_steps(&sim, s.points, &total);
         if (sim.step % 100 == 0)
             s = look(&sim);
@@ -123,21 +127,74 @@ int main(void)
             half = s;
         }
     }
-    steps = (double)sim.step;
     report("vgcm_damaged_ns_point", &damaged, 7, limit);
-    printf(
-        "vgcm: then %.3g of the points were damaged, %.3g broken, %.3g of the contacts by points\n",
-        (double)half.damaged / (double)s.points, (double)half.broken / (double)s.points,
-        (double)half.rows_of_points / (double)s.contacts);
-    if (!short_run) {
-        double mean = 1e9 * total / steps / (double)s.points;
+    if (damaged.n > 0) {
+        printf("vgcm: then %.3g of the points were damaged, %.3g broken, %.3g of the contacts by "
+               "points\n",
+               (double)half.damaged / (double)s.points, (double)half.broken / (double)s.points,
+               (double)half.rows_of_points / (double)s.contacts);
+        double mean = 1e9 * total / (double)sim.step / (double)s.points;
         bench_report(
             &(struct bench_value){"vgcm_ucs_mean_ns_point", mean, "ns/point", 8, limit, 0});
-        bench_report(&(struct bench_value){"ucs_8000_vgcm_cpu_s", total, "s", 20, 0, 0});
-        printf("vgcm: %.0f steps, %.3g of the points damaged, %.3g broken at the end\n", steps,
-               (double)s.damaged / (double)s.points, (double)s.broken / (double)s.points);
+        printf("vgcm: default settings: %.1f s, %.0f steps, %.3g of the points damaged, %.3g "
+               "broken at the end, %.2f MPa\n",
+               total, (double)sim.step, (double)s.damaged / (double)s.points,
+               (double)s.broken / (double)s.points, 1e-6 * sim.rig.force_peak / sim.rig.section);
     }
     brc_sim_free(&sim);
+}
+
+/* Strength in compression [Pa], with steps and seconds. */
+static double strength(struct brc_context *ctx, const struct brc_specimen *specimen,
+                       const char *const *run, const char *const *test, double *seconds,
+                       double *steps)
+{
+    struct brc_sim sim;
+    make(ctx, specimen, &sim, run, test);
+    double begin = cpu_seconds();
+    while (!brc_rig_done(&sim))
+        must(ctx, brc_sim_step(&sim));
+    *seconds = cpu_seconds() - begin;
+    *steps = (double)sim.step;
+    double value = sim.rig.force_peak / sim.rig.section;
+    brc_sim_free(&sim);
+    return value;
+}
+
+/* The cheapest settings within 3 % of slow loading: less damping, masses near the stable limit, a
+ * larger loading target. BENCH_REFERENCE=1 runs slow loading too (minutes). */
+static void time_compression(struct brc_context *ctx, const struct brc_specimen *specimen)
+{
+    const char *const run[] = {"local_damping", "0.2", "mass_margin", "0.45", NULL};
+    const char *const test[] = {"target", "0.008", "rate", "1e-6 1/s", NULL};
+    const char *const slow_run[] = {NULL};
+    const char *const slow[] = {"loading", "fixed", "rate", "2e-7 1/s", "stop_drop", "0.8", NULL};
+    double seconds, steps, reference = REFERENCE;
+    if (getenv("BENCH_REFERENCE")) {
+        reference = strength(ctx, specimen, slow_run, slow, &seconds, &steps);
+        printf("ucs_8000_vgcm: slow loading: %.6g MPa, %.0f steps, %.0f s\n", 1e-6 * reference,
+               steps, seconds);
+    }
+    double value = strength(ctx, specimen, run, test, &seconds, &steps);
+    bench_report(&(struct bench_value){"ucs_8000_vgcm_cpu_s", seconds, "s", 20, 0, 0});
+    bench_report(&(struct bench_value){"ucs_8000_vgcm_steps", steps, "1", 0, 0, 0});
+    bench_report(
+        &(struct bench_value){"ucs_8000_vgcm_error", fabs(value / reference - 1), "1", 0.03, 0, 0});
+    printf("ucs_8000_vgcm: %.6g MPa against %.6g MPa by slow loading\n", 1e-6 * value,
+           1e-6 * reference);
+}
+
+int main(void)
+{
+    struct brc_context ctx = BRC_CONTEXT_INIT;
+    struct brc_specimen_params s;
+    struct brc_specimen specimen;
+    ctx.quiet = 1;
+    must(&ctx, brc_params_defaults(&ctx, brc_specimen_param_list, &s));
+    must(&ctx, brc_specimen_create(&ctx, &s, &specimen));
+    time_points(&ctx, &specimen);
+    if (!getenv("BENCH_SHORT"))
+        time_compression(&ctx, &specimen);
     brc_specimen_free(&specimen);
     return 0;
 }
