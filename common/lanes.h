@@ -156,6 +156,19 @@ BRC_LANES_INLINE brc_lanes brc_lanes_mins(const brc_lanes a[BRC_LANES])
                          __builtin_shufflevector(lo, hi, 2, 3, 6, 7));
 }
 
+/* Lane i of r[j] becomes lane j of r[i]. */
+BRC_LANES_INLINE void brc_lanes_transpose(brc_lanes r[BRC_LANES])
+{
+    brc_lanes even = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6);
+    brc_lanes odd = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+    brc_lanes even_up = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6);
+    brc_lanes odd_up = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+    r[0] = __builtin_shufflevector(even, even_up, 0, 1, 4, 5);
+    r[1] = __builtin_shufflevector(odd, odd_up, 0, 1, 4, 5);
+    r[2] = __builtin_shufflevector(even, even_up, 2, 3, 6, 7);
+    r[3] = __builtin_shufflevector(odd, odd_up, 2, 3, 6, 7);
+}
+
 /* Four rows of 3 values, one after the other, to and from lanes. */
 BRC_LANES_INLINE void brc_lanes_at3(brc_lanes r[3], double (*x)[3])
 {
@@ -203,6 +216,46 @@ BRC_LANES_INLINE void brc_lanes_put6(double (*x)[6], const brc_lanes r[6])
         *(brc_pair_loose *)&x[2][k] = __builtin_shufflevector(lo, lo, 2, 3);
         *(brc_pair_loose *)&x[3][k] = __builtin_shufflevector(hi, hi, 2, 3);
     }
+}
+
+/* Rows of 6 values at four places, to lanes. */
+BRC_LANES_INLINE void brc_lanes_gather6(brc_lanes r[6], double (*x)[6], const int32_t row[4])
+{
+    for (int k = 0; k < 6; k += 2) {
+        brc_lanes lo = __builtin_shufflevector(*(const brc_pair_loose *)&x[row[0]][k],
+                                               *(const brc_pair_loose *)&x[row[2]][k], 0, 1, 2, 3);
+        brc_lanes hi = __builtin_shufflevector(*(const brc_pair_loose *)&x[row[1]][k],
+                                               *(const brc_pair_loose *)&x[row[3]][k], 0, 1, 2, 3);
+        r[k] = __builtin_shufflevector(lo, hi, 0, 4, 2, 6);
+        r[k + 1] = __builtin_shufflevector(lo, hi, 1, 5, 3, 7);
+    }
+}
+
+/* Two values of four rows, from lanes. The first of equal rows is what stays. */
+BRC_LANES_INLINE void brc_lanes_scatter2(double *const x[4], brc_lanes r0, brc_lanes r1)
+{
+    brc_lanes lo = __builtin_shufflevector(r0, r1, 0, 4, 2, 6);
+    brc_lanes hi = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
+    *(brc_pair_loose *)x[3] = __builtin_shufflevector(hi, hi, 2, 3);
+    *(brc_pair_loose *)x[2] = __builtin_shufflevector(lo, lo, 2, 3);
+    *(brc_pair_loose *)x[1] = __builtin_shufflevector(hi, hi, 0, 1);
+    *(brc_pair_loose *)x[0] = __builtin_shufflevector(lo, lo, 0, 1);
+}
+
+/* Rows of 6 and of 3 values at four places, from lanes. The first of equal rows is what stays. */
+BRC_LANES_INLINE void brc_lanes_scatter6(double (*x)[6], const int32_t row[4], const brc_lanes r[6])
+{
+    for (int k = 0; k < 6; k += 2)
+        brc_lanes_scatter2(
+            (double *const[]){&x[row[0]][k], &x[row[1]][k], &x[row[2]][k], &x[row[3]][k]}, r[k],
+            r[k + 1]);
+}
+
+BRC_LANES_INLINE void brc_lanes_scatter3(double (*x)[3], const int32_t row[4], const brc_lanes r[3])
+{
+    brc_lanes_scatter2((double *const[]){x[row[0]], x[row[1]], x[row[2]], x[row[3]]}, r[0], r[1]);
+    for (int i = 3; i >= 0; i--)
+        x[row[i]][2] = r[2][i];
 }
 
 /* Rows of 3 values at four places, to lanes. */

@@ -210,7 +210,7 @@ static inline bool poly_touch_core(struct poly_touch *t, const struct poly_pair 
     const double(*rm)[3] = of_b ? p->ra : p->rb;
     const double *v = of_b ? p->vb[vertex] : p->va[vertex];
     double q[3];
-    struct poly_foot foot;
+    struct poly_foot foot = {.s = 0};
     poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
     if (*margin > 0) {
         poly_foot_known(&foot, c, *place, q);

@@ -3,10 +3,6 @@
  * be computed goes into work lists, and kernels.c does it four at a time. */
 #include "step.h"
 
-/* A point that has come apart stays awake while its gap is less than this many steps' path: to
- * look at it again costs as much as it does for that long. */
-static const double DOZE = 4;
-
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -90,289 +86,90 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
     }
 }
 
-/* --- points ------------------------------------------------------------------------------------
- */
-
-/* Row i of the block as the literal functions want it. */
-static const struct poly_pair *pair_of(struct poly_block *block, int32_t i)
-{
-    if (block->pair_row != block->row[i])
-        poly_pair_of(&block->pair, block->sim, block->st, block->a[i], block->b[i]);
-    block->pair_row = block->row[i];
-    return &block->pair;
-}
-
-static enum poly_rule rule_of(const struct poly_block *block)
-{
-    return (enum poly_rule)poly_params_of(block->sim)->features;
-}
-
-static void put_touch(struct poly_block *block, int32_t slot, const struct poly_touch *t)
-{
-    struct poly_touches *to = &block->touch[slot / BRC_LANES];
-    int lane = slot % BRC_LANES;
-    to->delta[lane] = t->delta;
-    to->weight[lane] = t->weight;
-    for (int k = 0; k < 3; k++) {
-        to->n[k][lane] = t->n[k];
-        to->x[k][lane] = t->x[k];
-        to->g[k][lane] = t->g[k];
-        to->c[k][lane] = t->c[k];
-    }
-}
-
-/* A slot of a segment without a point. */
-static void leave_empty(struct poly_block *block, const struct poly_segment *segment, int32_t slot)
-{
-    put_touch(block, slot, &(struct poly_touch){.weight = 0});
-    block->point[slot] = block->point[segment->slot];
-}
-
-/* A point by the literal functions. True when it is a vertex whose foot on a face or place is sure
- * now: then the work list has it. */
-static bool touch_literally(struct poly_block *block, int32_t i, size_t p, int32_t slot)
-{
-    struct brc_contacts *c = &block->sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
-    struct poly_points *points = c->point_columns;
-    struct poly_feature f = poly_point(points, p);
-    struct poly_touch t, apart = {.weight = 0};
-    enum poly_rule rule = rule_of(block);
-    const struct poly_pair *pair = pair_of(block, i);
-    double room = rows->room[block->row[i]], margin = 0;
-    int32_t *place = poly_remembered(&f);
-    bool touches = poly_touch_again(&t, pair, &f, place, &points->active[p], &margin, rule);
-    points->i[p] = f.i;
-    points->j[p] = f.j;
-    if (f.kind != POLY_EDGES) {
-        points->hold[p] = room - margin;
-        if (margin > 0)
-            return true;
-    }
-    if (!touches)
-        apart.delta = rule == POLY_MERGED ? t.delta : -poly_free_path(pair, &f, rule, room);
-    put_touch(block, slot, touches ? &t : &apart);
-    return false;
-}
-
-static void list_edges(struct poly_block *block, int32_t i, size_t p, int32_t slot)
-{
-    const struct poly_shapes *s = &block->st->shapes;
-    const struct poly_points *points = block->sim->pairs.point_columns;
-    int32_t a = block->a[i], b = block->b[i];
-    const int32_t *ea = s->end[s->edge_first[a] + (size_t)points->i[p]];
-    const int32_t *eb = s->end[s->edge_first[b] + (size_t)points->j[p]];
-    int32_t va = (int32_t)s->vertex_first[a], vb = (int32_t)s->vertex_first[b];
-    int32_t side = points->active[p];
-    block->edge[block->n_edges++] =
-        (struct poly_edge_item){.slot = slot,
-                                .end = {va + ea[0], va + ea[1], vb + eb[0], vb + eb[1]},
-                                .side = side == 3 ? 0 : side,
-                                .reach = poly_core_reach(block->sim, a, b)};
-}
-
-/* The work list for a vertex with these vertices near. */
-static int vertex_list(const int32_t near[POLY_NEAR], bool flat)
-{
-    if (near[0] == POLY_MANY_NEAR)
-        return flat ? POLY_FLAT_ALL : POLY_SHARP_ALL;
-    if (near[1] == POLY_NONE_NEAR)
-        return flat ? POLY_FLAT : POLY_SHARP;
-    return flat ? POLY_FLAT_NEAR : POLY_SHARP_NEAR;
-}
-
-static void list_vertex(struct poly_block *block, int32_t i, size_t p, int32_t slot, bool merged)
-{
-    const struct poly_shapes *s = &block->st->shapes;
-    const struct poly_points *points = block->sim->pairs.point_columns;
-    bool of_b = points->kind[p] == POLY_VERTEX_B;
-    int32_t own = of_b ? block->b[i] : block->a[i], other = of_b ? block->a[i] : block->b[i];
-    int32_t vertex = of_b ? points->j[p] : points->i[p];
-    int32_t place = of_b ? points->i[p] : points->j[p], index = merged ? place >> 2 : place;
-    int32_t first = (int32_t)s->vertex_first[other];
-    bool flat = !merged || (place & 3) == POLY_ON_FACE;
-    int list = vertex_list(points->near[p], flat);
-    struct poly_vertex_item *item = &block->vertex[list][block->n_vertices[list]++];
-    item->slot = slot;
-    item->vertex = (int32_t)s->vertex_first[own] + vertex;
-    item->sign = of_b ? 1 : -1;
-    item->first = first;
-    item->n = (int32_t)s->vertex_first[other + 1] - first;
-    memcpy(item->near, points->near[p], sizeof item->near);
-    if (flat) {
-        item->place[0] = (int32_t)s->face_first[other] + index;
-        return;
-    }
-    const int32_t *end = s->end[s->edge_first[other] + (size_t)index];
-    bool on_edge = (place & 3) == POLY_ON_EDGE;
-    item->place[0] = first + (on_edge ? end[0] : index);
-    item->place[1] = first + (on_edge ? end[1] : index);
-}
-
-/* A point into the work list that knows it. What is computed where depends on the pose alone, not
- * on what is remembered. */
-static void list_point(struct poly_block *block, int32_t i, size_t p, int32_t slot, double room)
-{
-    const struct poly_points *points = block->sim->pairs.point_columns;
-    enum poly_rule rule = rule_of(block);
-    if (rule == POLY_CLOSED)
-        touch_literally(block, i, p, slot);
-    else if (points->kind[p] == POLY_EDGES)
-        list_edges(block, i, p, slot);
-    else if (room > points->hold[p] || touch_literally(block, i, p, slot))
-        list_vertex(block, i, p, slot, rule == POLY_MERGED);
-}
-
-static struct poly_spring_law spring_law(const struct brc_sim *sim)
-{
-    const struct poly_params *p = poly_params_of(sim);
-    return (struct poly_spring_law){.kn = poly_pair_stiffness(p->kn, p->kn),
-                                    .kt = poly_pair_stiffness(p->kt, p->kt),
-                                    .mu = p->mu};
-}
-
-/* A point that does not touch: its spring is released, and it goes to sleep when the path that it
- * is free for is worth it. Returns whether it does. */
-static bool come_apart(struct poly_block *block, int32_t i, size_t p, double path)
-{
-    struct brc_sim *sim = block->sim;
-    const struct poly_rows *rows = sim->pairs.model_columns;
-    struct poly_points *points = sim->pairs.point_columns;
-    struct poly_spring_law law = spring_law(sim);
-    size_t row = (size_t)block->row[i];
-    if (points->weight[p] > 0 && law.mu > 0 && law.kt > 0) {
-        struct poly_motion m;
-        poly_start_motion(&m, sim, block->a[i], block->b[i]);
-        poly_release(BRC_OPTION(sim->run.ledger) ? &sim->ledger : NULL, &law, &m, points->xi[p],
-                     points->weight[p]);
-    }
-    points->weight[p] = 0;
-    points->active[p] = 0;
-    if (path < DOZE * block->group[i / BRC_LANES].path[i % BRC_LANES])
-        return false;
-    poly_sleep_point(&sim->pairs, row, p, rows->room[row] - path);
-    return true;
-}
-
-static void copy_touch(struct poly_block *block, int32_t to, int32_t from)
-{
-    const double *x = (const double *)&block->touch[from / BRC_LANES] + from % BRC_LANES;
-    double *y = (double *)&block->touch[to / BRC_LANES] + to % BRC_LANES;
-    for (size_t k = 0; k < sizeof block->touch[0] / sizeof *x; k += BRC_LANES)
-        y[k] = x[k];
-}
-
-/* Takes the slots of a segment out that do not touch: the sums of its row are over touches alone.
- * From the last one on, so that points that are still to come do not move. */
-static void drop_apart(struct poly_block *block, struct poly_segment *segment)
-{
-    int32_t slot = segment->slot, end = slot + segment->n, to = end;
-    for (int32_t k = end - 1; k >= slot; k--) {
-        const struct poly_touches *t = &block->touch[k / BRC_LANES];
-        if (t->weight[k % BRC_LANES] > 0)
-            continue;
-        to = k;
-        if (come_apart(block, segment->row, (size_t)block->point[k],
-                       poly_most(-t->delta[k % BRC_LANES], 0)))
-            for (int32_t after = k + 1; after < end; after++)
-                block->point[after]--;
-    }
-    if (to == end)
-        return;
-    for (int32_t k = to + 1; k < end; k++) {
-        if (!(block->touch[k / BRC_LANES].weight[k % BRC_LANES] > 0))
-            continue;
-        block->point[to] = block->point[k];
-        copy_touch(block, to++, k);
-    }
-    segment->n = to - slot;
-    for (; to % BRC_LANES != 0; to++)
-        leave_empty(block, segment, to);
-}
-
-/* What touches keeps its weight. */
-static void store_weights(struct poly_block *block, const struct poly_segment *segment)
-{
-    struct poly_points *points = block->sim->pairs.point_columns;
-    for (int32_t slot = segment->slot; slot < segment->slot + segment->n; slot++) {
-        size_t p = (size_t)block->point[slot];
-        if (points->active[p] == 0)
-            points->active[p] = 1;
-        points->weight[p] = block->touch[slot / BRC_LANES].weight[slot % BRC_LANES];
-    }
-}
-
-/* Computes all that is listed. */
-static void work_off(struct poly_block *block)
-{
-    block->st->kernels.touch(block);
-    for (int32_t i = 0; i < block->n_segments; i++)
-        drop_apart(block, &block->segment[i]);
-    block->st->kernels.points(block);
-    for (int32_t i = 0; i < block->n_segments; i++)
-        store_weights(block, &block->segment[i]);
-    block->n_segments = block->n_slots = 0;
-}
-
-/* Ends the last segment at a whole group: slots that are left over stay empty. */
-static void end_segment(struct poly_block *block)
-{
-    struct poly_segment *segment = &block->segment[block->n_segments];
-    segment->n = block->n_slots - segment->slot;
-    for (; block->n_slots % BRC_LANES != 0; block->n_slots++)
-        leave_empty(block, segment, block->n_slots);
-    block->n_segments += segment->n > 0;
-}
-
-static void begin_segment(struct poly_block *block, int32_t i)
-{
-    block->segment[block->n_segments] = (struct poly_segment){.row = i, .slot = block->n_slots};
-}
-
-/* Lists the points of row i of the block that may touch. A row is never split, unless it fills all
- * slots by itself: its sums do not depend on the rows around it. */
-static void list_points(struct poly_block *block, int32_t i)
-{
-    const struct brc_contacts *c = &block->sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
-    size_t row = (size_t)block->row[i], p = (size_t)c->p0[row], n;
-    poly_wake_points(&block->sim->pairs, row, rule_of(block) == POLY_MERGED);
-    n = (size_t)rows->awake[row];
-    if (n == 0)
-        return;
-    if ((size_t)block->n_slots + n > POLY_SLOTS)
-        work_off(block);
-    /* parts from the last one on: those that are still to come do not move (settle_points) */
-    while (n > 0) {
-        size_t part = n % POLY_SLOTS > 0 ? n % POLY_SLOTS : POLY_SLOTS;
-        n -= part;
-        begin_segment(block, i);
-        for (size_t q = p + n; q < p + n + part; q++) {
-            block->point[block->n_slots] = (int32_t)q;
-            list_point(block, i, q, block->n_slots++, rows->room[row]);
-        }
-        end_segment(block);
-        if (n > 0)
-            work_off(block);
-    }
-}
-
-/* --- rows --------------------------------------------------------------------------------------
- */
-
-/* Takes rows that have something to do into the block; returns the next row. */
-static size_t take_rows(struct poly_block *block, size_t row)
+/* Rows that have something to do, for the next block; returns the row after them. */
+static size_t look_ahead(struct poly_block *block, size_t row)
 {
     const struct brc_contacts *c = &block->sim->pairs;
     int32_t n = 0;
-    for (; row < c->n && n < POLY_ROWS; row++) {
-        bool listed = c->np[row] > 0;
-        if (!listed && poly_is_idle(c, row) && !poly_is_awake(block->sim, c, row))
+    for (; row < c->n && n < POLY_ROWS; row++)
+        if (c->np[row] > 0 || !poly_is_idle(c, row) || poly_is_awake(block->sim, c, row))
+            block->ahead[n++] = (int32_t)row;
+    block->n_ahead = n;
+    return row;
+}
+
+/* Fetching is inlined into what has effects: compilers leave out calls that only fetch. */
+BRC_LANES_INLINE void fetch(const void *at, size_t size)
+{
+    for (size_t i = 0; i < size; i += 64)
+        __builtin_prefetch((const char *)at + i);
+    __builtin_prefetch((const char *)at + size - 1);
+}
+
+/* What the step reads of the rows of the next block, while this one is worked on: the step waits
+ * for memory more than for anything else. */
+BRC_LANES_INLINE void fetch_rows(const struct poly_block *block)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    for (int32_t i = 0; i < block->n_ahead; i++) {
+        int32_t row = block->ahead[i];
+        __builtin_prefetch(c->p0 + row);
+        __builtin_prefetch(c->a + row);
+        __builtin_prefetch(c->b + row);
+        __builtin_prefetch(c->status + row);
+        __builtin_prefetch(c->gap + row);
+        __builtin_prefetch(rows->wake + row);
+        __builtin_prefetch(rows->room + row);
+        __builtin_prefetch(rows->awake + row);
+        __builtin_prefetch(rows->ready + row);
+        __builtin_prefetch(rows->calm + row);
+        __builtin_prefetch(rows->area + row);
+        __builtin_prefetch(rows->length + row);
+        fetch(c->f[row], sizeof c->f[row]);
+        fetch(c->ta[row], sizeof c->ta[row]);
+        fetch(c->tb[row], sizeof c->tb[row]);
+        fetch(c->k[row], sizeof c->k[row]);
+        fetch(rows->ca[row], sizeof rows->ca[row]);
+        fetch(rows->cb[row], sizeof rows->cb[row]);
+        fetch(rows->na[row], sizeof rows->na[row]);
+        fetch(rows->nb[row], sizeof rows->nb[row]);
+        fetch(rows->ta[row], sizeof rows->ta[row]);
+        fetch(rows->tb[row], sizeof rows->tb[row]);
+        fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
+        fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
+    }
+}
+
+BRC_LANES_INLINE void fetch_points(const struct poly_block *block)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    const struct poly_points *points = c->point_columns;
+    for (int32_t i = 0; i < block->n_ahead; i++) {
+        int32_t row = block->ahead[i];
+        size_t p = (size_t)c->p0[row], n = (size_t)rows->awake[row];
+        __builtin_prefetch(points->sleep + p + n);
+        if (n == 0)
             continue;
-        block->row[n] = (int32_t)row;
-        block->a[n] = c->a[row];
-        block->b[n] = c->b[row];
-        block->listed[n++] = listed;
+        fetch(points->item[p], n * sizeof points->item[p]);
+        fetch(points->xi[p], n * sizeof points->xi[p]);
+        fetch(points->n[p], n * sizeof points->n[p]);
+        fetch(points->weight + p, n * sizeof points->weight[p]);
+    }
+}
+
+/* The rows ahead become those of the block. */
+static void take_rows(struct poly_block *block)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    int32_t n = block->n_ahead;
+    for (int32_t i = 0; i < n; i++) {
+        int32_t row = block->ahead[i];
+        block->row[i] = row;
+        block->a[i] = c->a[row];
+        block->b[i] = c->b[row];
+        block->listed[i] = c->np[row] > 0;
     }
     block->n_rows = n;
     for (; n % BRC_LANES != 0; n++) {
@@ -380,7 +177,6 @@ static size_t take_rows(struct poly_block *block, size_t row)
         block->a[n] = block->a[n - 1];
         block->b[n] = block->b[n - 1];
     }
-    return row;
 }
 
 /* The bond of a row breaks: the lanes lose it. */
@@ -412,8 +208,6 @@ static int prepare_row(struct poly_block *block, int32_t i)
     struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     int lane = i % BRC_LANES;
-    if (block->listed[i])
-        rows->room[row] -= g->path[lane];
     if (block->listed[i] ? rows->room[row] <= 0 : poly_is_awake(sim, c, row))
         BRC_TRY(poly_list_row(sim, block->st, row));
     g->gap[lane] =
@@ -423,34 +217,18 @@ static int prepare_row(struct poly_block *block, int32_t i)
     return 0;
 }
 
-/* Forces, moments and stiffness of row i of the block from its lanes; works into the ledger. */
+/* Stiffness of row i of the block; works into the ledger. */
 static void store_row(struct poly_block *block, int32_t i, bool viscous)
 {
     struct brc_sim *sim = block->sim;
     struct brc_contacts *c = &sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
     const struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     int lane = i % BRC_LANES;
-    for (int k = 0; k < 3; k++) {
-        c->f[row][k] = g->total.f[k][lane];
-        c->ta[row][k] = g->total.m[k][lane];
-        c->tb[row][k] = g->tb[k][lane];
-    }
     c->gap[row] = g->gap[lane];
     poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
     if (!BRC_OPTION(sim->run.ledger))
         return;
-    for (int k = 0; k < 3; k++) {
-        rows->normal_old[row][k] = g->normal.f[k][lane];
-        rows->normal_old[row][3 + k] = g->normal.m[k][lane];
-        rows->bond_old[row][k] = g->bond.f[k][lane];
-        rows->bond_old[row][3 + k] = g->bond.m[k][lane];
-        if (viscous) {
-            rows->viscous_old[row][k] = g->viscous.f[k][lane];
-            rows->viscous_old[row][3 + k] = g->viscous.m[k][lane];
-        }
-    }
     sim->ledger.contact_normal += g->work_normal[lane];
     sim->ledger.bond += g->work_bond[lane];
     if (viscous)
@@ -461,7 +239,7 @@ static void store_row(struct poly_block *block, int32_t i, bool viscous)
 
 static void open_block(struct poly_block *block, struct brc_sim *sim, struct poly_state *st)
 {
-    struct poly_spring_law law = spring_law(sim);
+    struct poly_spring_law law = poly_pair_law(sim);
     double radius = poly_params_of(sim)->radius;
     block->sim = sim;
     block->st = st;
@@ -472,8 +250,8 @@ static void open_block(struct poly_block *block, struct brc_sim *sim, struct pol
     block->ell = radius;
     block->skin = POLY_LIST_SKIN * radius;
     block->pair_row = -1;
-    block->n_slots = block->n_segments = block->n_edges = 0;
-    memset(block->n_vertices, 0, sizeof block->n_vertices);
+    block->n_slots = block->n_segments = 0;
+    memset(block->n_tasks, 0, sizeof block->n_tasks);
 }
 
 void poly_forces(struct brc_sim *sim, void *state)
@@ -484,15 +262,21 @@ void poly_forces(struct brc_sim *sim, void *state)
     bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
     poly_world(sim, st);
     open_block(block, sim, st);
-    for (size_t row = 0; row < sim->pairs.n;) {
-        row = take_rows(block, row);
+    size_t row = look_ahead(block, 0);
+    while (block->n_ahead > 0) {
+        take_rows(block);
+        row = look_ahead(block, row);
+        fetch_rows(block);
         st->kernels.motion(block);
-        for (int32_t i = 0; i < block->n_rows; i++)
-            if (prepare_row(block, i) != 0)
+        for (int32_t i = 0; i < block->n_rows; i++) {
+            block->nearest[i] = HUGE_VAL;
+            if (!block->calm[i] && prepare_row(block, i) != 0)
                 return;
+        }
         for (int32_t i = 0; i < block->n_rows; i++)
-            list_points(block, i);
-        work_off(block);
+            poly_list_points(block, i);
+        fetch_points(block);
+        poly_work_off(block);
         st->kernels.finish(block);
         for (int32_t i = 0; i < block->n_rows; i++)
             store_row(block, i, viscous);

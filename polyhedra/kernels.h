@@ -5,254 +5,23 @@
 #define POLY_KERNELS_H
 
 #include "polyhedra/listing.h"
+#include "polyhedra/motion.h"
 
 #include <string.h>
-
-/* --- rows: motion and bonds ------------------------------------------------------------------- */
-
-/* The rows of a group, as gathers want them. */
-struct numbers {
-    int32_t row[BRC_LANES], a[BRC_LANES], b[BRC_LANES];
-};
-
-BRC_LANES_INLINE void numbers_of(struct numbers *i, const struct poly_block *block, int32_t group)
-{
-    memcpy(i->row, block->row + BRC_LANES * group, sizeof i->row);
-    memcpy(i->a, block->a + BRC_LANES * group, sizeof i->a);
-    memcpy(i->b, block->b + BRC_LANES * group, sizeof i->b);
-}
-
-/* r += s (w x (w x a)) */
-BRC_LANES_INLINE void add_double_cross(brc_lanes r[3], brc_lanes s, const brc_lanes w[3],
-                                       const brc_lanes a[3])
-{
-    brc_lanes c[3];
-    brc_lanes_cross(c, w, a);
-    brc_lanes_cross(c, w, c);
-    axpy(r, s, c);
-}
-
-/* Velocity of b relative to a with arms at the middle of the step, so that a pair that turns as one
- * body does not slip but for the third order of the step's angle: for an arm r from a,
- * dv + (wb - h wb wb)(r - x) - (wa - h wa wa) r, with cross products for products and h = dt / 2.
- */
-BRC_LANES_INLINE void slip_of_row(struct poly_row_group *g, double dt)
-{
-    const brc_lanes *wa = g->wa, *wb = g->wb, h = brc_lanes_all(0.5 * dt);
-    brc_lanes dw[3], c[3];
-    brc_lanes_cross(c, wb, g->x);
-    sub(g->slip, g->dv, c);
-    add_double_cross(g->slip, h, wb, g->x);
-    sub(dw, wb, wa);
-    brc_lanes widen = h * (brc_lanes_dot(wb, wb) - brc_lanes_dot(wa, wa));
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            g->slope[i][j] = -h * (wb[i] * wb[j] - wa[i] * wa[j]);
-        g->slope[i][i] += widen;
-        g->slope[i][(i + 1) % 3] -= dw[(i + 2) % 3];
-        g->slope[i][(i + 2) % 3] += dw[(i + 1) % 3];
-        g->turn[i] = brc_lanes_all(0.25 * dt) * (wa[i] + wb[i]);
-    }
-}
-
-/* Bound of the path that points of b have made in the frame of a in this step. Motions that both
- * share, turns included, do not count; the last term is of second order in the turn. a's vertices
- * near b move with it too, so its reach is taken larger by the range of a contact. */
-BRC_LANES_INLINE brc_lanes relative_path(const struct poly_row_group *g, const brc_lanes reach_a,
-                                         const brc_lanes reach_b, double dt)
-{
-    brc_lanes u[3], dw[3];
-    brc_lanes_cross(u, g->x, g->wa);
-    add(u, u, g->dv);
-    sub(dw, g->wb, g->wa);
-    brc_lanes speed =
-        brc_lanes_sqrt(brc_lanes_dot(u, u)) + reach_b * brc_lanes_sqrt(brc_lanes_dot(dw, dw));
-    return 1.1 * dt * speed + dt * dt * brc_lanes_dot(g->wa, g->wa) * (reach_a + 2 * reach_b);
-}
-
-BRC_LANES_INLINE void motion_of_group(struct poly_block *block, struct poly_row_group *g,
-                                      const struct numbers *i)
-{
-    const struct brc_bodies *bodies = &block->sim->bodies;
-    brc_lanes xb[3], va[3], vb[3];
-    brc_lanes_gather3(g->xa, bodies->x, i->a);
-    brc_lanes_gather3(xb, bodies->x, i->b);
-    brc_lanes_gather3(va, bodies->v, i->a);
-    brc_lanes_gather3(vb, bodies->v, i->b);
-    brc_lanes_gather3(g->wa, bodies->w, i->a);
-    brc_lanes_gather3(g->wb, bodies->w, i->b);
-    sub(g->x, xb, g->xa);
-    sub(g->dv, vb, va);
-    slip_of_row(g, block->sim->dt);
-    g->path = relative_path(g, gather(bodies->reach, i->a),
-                            gather(bodies->reach, i->b) + block->rest, block->sim->dt);
-}
-
-/* Constants of the bonds of four rows, as poly_bond_of; zero stiffness where there is none. */
-struct bonds {
-    brc_lanes kn, kt, ktheta, length;
-    brc_mask intact;
-};
-
-BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_block *block,
-                                     const struct numbers *i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    const struct brc_contacts *c = &block->sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
-    const uint8_t status[BRC_LANES] = {c->status[i->row[0]], c->status[i->row[1]],
-                                       c->status[i->row[2]], c->status[i->row[3]]};
-    bonds->intact = brc_lanes_equal(status, BRC_INTACT);
-    brc_lanes area = gather(rows->area, i->row), length = gather(rows->length, i->row);
-    brc_lanes stiff = brc_lanes_where(bonds->intact, area / length);
-    brc_lanes arm = p->torsion_length > 0 ? brc_lanes_all(p->torsion_length) : length;
-    bonds->kn = p->bn * stiff;
-    bonds->kt = p->bt * stiff;
-    bonds->ktheta = brc_lanes_where(bonds->intact, p->bm * area * arm);
-    bonds->length = length;
-}
-
-/* Four vectors of body frames in space; rotation matrices r, column of body vectors. */
-BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[3][3], double (*column)[3],
-                                    const int32_t row[BRC_LANES])
-{
-    brc_lanes v[3];
-    brc_lanes_gather3(v, column, row);
-    set(out, brc_lanes_dot(r[0], v), brc_lanes_dot(r[1], v), brc_lanes_dot(r[2], v));
-}
-
-BRC_LANES_INLINE void gather_turn(brc_lanes r[3][3], double (*turn)[3][3],
-                                  const int32_t i[BRC_LANES])
-{
-    for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-            r[k][l] =
-                (brc_lanes){turn[i[0]][k][l], turn[i[1]][k][l], turn[i[2]][k][l], turn[i[3]][k][l]};
-}
-
-/* poly_twist for four bonds. */
-BRC_LANES_INLINE brc_lanes twist(const brc_lanes n[3], const brc_lanes ta[3], const brc_lanes tb[3],
-                                 brc_mask intact)
-{
-    brc_lanes c[3];
-    brc_lanes_cross(c, ta, tb);
-    brc_lanes x = brc_lanes_dot(ta, tb) - brc_lanes_dot(ta, n) * brc_lanes_dot(tb, n);
-    brc_lanes y = brc_lanes_where(intact, brc_lanes_dot(c, n));
-    x = brc_lanes_pick(intact, x, brc_lanes_all(1));
-    brc_lanes t = y / x, angle = t * (1 - t * t * (1.0 / 3 - t * t / 5));
-    brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(1e-3));
-    if (brc_lanes_any(~small))
-        for (int k = 0; k < BRC_LANES; k++)
-            angle[k] = small[k] ? angle[k] : atan2(y[k], x[k]);
-    return angle;
-}
-
-/* poly_bond_law of four bonds into the group: wrench, stiffness, breaking. */
-BRC_LANES_INLINE void bond_law(struct poly_row_group *g, const struct bonds *bond,
-                               const struct poly_params *p, const brc_lanes pa[3],
-                               const brc_lanes pb[3], const brc_lanes n[3], brc_lanes twisted)
-{
-    brc_lanes arm[3], back[3], u[3], ut[3], c[3];
-    sub(u, pb, pa);
-    brc_lanes un = brc_lanes_dot(u, n);
-    set(ut, u[0] - un * n[0], u[1] - un * n[1], u[2] - un * n[2]);
-    brc_lanes open = brc_lanes_max(un, brc_lanes_all(0)); /* eq:gt12:12 */
-    for (int k = 0; k < 3; k++) {
-        g->bond.f[k] = -bond->kn * open * n[k]; /* eq:gt12:11 */
-        g->bond.f[k] -= bond->kt * ut[k];       /* eq:gt12:13 */
-        arm[k] = 0.5 * (pa[k] + pb[k]);
-    }
-    brc_lanes limit = bond->length * p->eps_th;
-    brc_lanes slip = brc_lanes_sqrt(brc_lanes_dot(ut, ut));
-    g->broken = open / limit + slip / limit;    /* eq:gt12:15 */
-    brc_lanes moment = -bond->ktheta * twisted; /* eq:gt12:14 */
-    if (p->theta_limit)
-        g->broken += brc_lanes_abs(twisted) / p->theta_th;
-    sub(back, arm, g->x);
-    brc_lanes_cross(c, arm, g->bond.f);
-    scale(g->bond.m, n, moment);
-    add(g->bond.m, g->bond.m, c);
-    brc_lanes stiff = brc_lanes_max(bond->kn, bond->kt);
-    g->k[0] = stiff;
-    g->k[1] = stiff * brc_lanes_dot(arm, arm) + bond->ktheta;
-    g->k[2] = stiff * brc_lanes_dot(back, back) + bond->ktheta;
-}
-
-BRC_LANES_INLINE void bond_of_group(struct poly_block *block, struct poly_row_group *g,
-                                    const struct numbers *i, const bool torsion)
-{
-    const struct poly_rows *rows = block->sim->pairs.model_columns;
-    brc_lanes ra[3][3], rb[3][3], pa[3], pb[3], na[3], nb[3], ta[3], tb[3], n[3];
-    struct bonds bonds;
-    bonds_of_group(&bonds, block, i);
-    gather_turn(ra, block->st->turn, i->a);
-    gather_turn(rb, block->st->turn, i->b);
-    /* material points relative to the centre of a */
-    body_to_space(pa, ra, rows->ca, i->row);
-    body_to_space(pb, rb, rows->cb, i->row);
-    add(pb, pb, g->x);
-    body_to_space(na, ra, rows->na, i->row);
-    body_to_space(nb, rb, rows->nb, i->row);
-    sub(n, na, nb);
-    scale(n, n, 1 / brc_lanes_sqrt(brc_lanes_dot(n, n)));
-    mask(n, bonds.intact, n);
-    brc_lanes twisted = brc_lanes_all(0);
-    if (torsion) {
-        body_to_space(ta, ra, rows->ta, i->row);
-        body_to_space(tb, rb, rows->tb, i->row);
-        twisted = twist(n, ta, tb, bonds.intact);
-    } else {
-        bonds.ktheta = brc_lanes_all(0);
-    }
-    bond_law(g, &bonds, poly_params_of(block->sim), pa, pb, n, twisted);
-    g->broken = brc_lanes_where(bonds.intact, g->broken);
-}
-
-BRC_LANES_INLINE void viscosities(struct poly_block *block, struct poly_row_group *g,
-                                  const struct numbers *i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    brc_lanes ma = gather(block->sim->bodies.true_mass, i->a);
-    brc_lanes mb = gather(block->sim->bodies.true_mass, i->b);
-    brc_lanes effective = ma * mb / (ma + mb);
-    g->gn = p->gn * effective;
-    g->gt = p->gt * effective;
-}
-
-BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion)
-{
-    const struct brc_contacts *c = &block->sim->pairs;
-    for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++) {
-        struct poly_row_group *g = &block->group[group];
-        struct numbers i;
-        bool has_bond = false;
-        numbers_of(&i, block, group);
-        motion_of_group(block, g, &i);
-        viscosities(block, g, &i);
-        for (int k = 0; k < BRC_LANES; k++)
-            has_bond |= c->status[i.row[k]] == BRC_INTACT;
-        g->k[0] = g->k[1] = g->k[2] = g->broken = brc_lanes_all(0);
-        clear((brc_lanes *)&g->bond, sizeof g->bond);
-        if (has_bond)
-            bond_of_group(block, g, &i, torsion);
-        clear((brc_lanes *)&g->normal, sizeof g->normal);
-        clear((brc_lanes *)&g->shear, sizeof g->shear);
-        clear((brc_lanes *)&g->viscous, sizeof g->viscous);
-        g->stored = g->slid = brc_lanes_all(0);
-    }
-}
 
 /* --- forces of touches ------------------------------------------------------------------------ */
 
 /* One row, the same in all lanes. */
 struct row_of_points {
     brc_lanes xa[3], x[3], slip[3], slope[3][3], turn[3], gn, gt;
+    double kn, kt, limit; /* limit: of xi per overlap */
 };
 
 /* Sums over the points of a row. */
 struct sums {
     struct poly_wrenches normal, shear, viscous;
     brc_lanes k[3], gap, stored, slid;
+    brc_mask fresh;
 };
 
 BRC_LANES_INLINE void push(struct poly_wrenches *w, const brc_lanes f[3], const brc_lanes arm[3])
@@ -297,51 +66,65 @@ BRC_LANES_INLINE void slide_spring(brc_lanes xi[3], const brc_lanes n[3], const 
     add(xi, xi, du); /* eq:gt12:9 */
     axpy(xi, -brc_lanes_dot(xi, n), n);
     brc_lanes xi2 = brc_lanes_dot(xi, xi);
-    brc_lanes cap = brc_lanes_pick(brc_lanes_less(limit * limit, xi2), limit / brc_lanes_sqrt(xi2),
-                                   brc_lanes_all(1));
+    brc_mask slips = brc_lanes_less(limit * limit, xi2);
+    if (!brc_lanes_any(slips))
+        return;
+    brc_lanes cap = brc_lanes_pick(slips, limit / brc_lanes_sqrt(xi2), brc_lanes_all(1));
     scale(xi, xi, cap); /* eq:gt12:8 */
 }
 
-/* Tangential springs: xi and the normals of the last step become those of now. */
-BRC_LANES_INLINE void push_shear(const struct poly_block *block, struct sums *s,
+/* State of four points: where they follow each other in their columns, or are put together. */
+struct springs {
+    double (*xi)[3], (*n)[3], *weight;
+};
+
+/* Four vectors from p on become those of a where the mask is set; old is what they are. */
+BRC_LANES_INLINE void keep3(double (*p)[3], brc_mask m, const brc_lanes a[3],
+                            const brc_lanes old[3])
+{
+    brc_lanes r[3];
+    for (int k = 0; k < 3; k++)
+        r[k] = brc_lanes_pick(m, a[k], old[k]);
+    brc_lanes_put3(p, r);
+}
+
+/* Tangential springs: xi and the normals of the last step become those of now; old is the weight
+ * that they had, where they touch now. */
+BRC_LANES_INLINE void push_shear(const struct springs *p, struct sums *s,
                                  const struct poly_touches *t, const struct row_of_points *row,
-                                 const brc_lanes du[3], const brc_lanes arm[3], const int32_t *p,
+                                 const brc_lanes du[3], const brc_lanes arm[3], brc_lanes old,
                                  const bool ledger)
 {
-    const struct poly_points *points = block->sim->pairs.point_columns;
-    const struct poly_params *params = poly_params_of(block->sim);
-    brc_lanes xi[3], n_old[3], before[3], f[3];
+    brc_lanes xi[3], xi_old[3], n_old[3], before[3], f[3];
     brc_mask touches = positive(t->weight);
-    brc_lanes old = brc_lanes_where(touches, gather(points->weight, p));
-    brc_lanes_gather3(xi, points->xi, p);
-    brc_lanes_gather3(n_old, points->n, p);
+    brc_lanes_at3(xi_old, p->xi);
+    brc_lanes_at3(n_old, p->n);
+    set(xi, xi_old[0], xi_old[1], xi_old[2]);
     turn_spring(xi, n_old, t->n, brc_lanes_dot(row->turn, t->n));
     mask(xi, positive(old), xi);
     set(before, xi[0], xi[1], xi[2]);
-    slide_spring(xi, t->n, du, params->mu * block->kn / block->kt * t->delta);
+    slide_spring(xi, t->n, du, row->limit * t->delta);
     mask(xi, touches, xi);
-    scale(f, xi, -block->kt * t->weight); /* eq:gt12:8 */
+    scale(f, xi, -row->kt * t->weight); /* eq:gt12:8 */
     push(&s->shear, f, arm);
-    for (int i = 0; i < BRC_LANES; i++)
-        for (int k = 0; k < 3 && t->weight[i] > 0; k++) {
-            points->xi[p[i]][k] = xi[k][i];
-            points->n[p[i]][k] = t->n[k][i];
-        }
+    keep3(p->xi, touches, xi, xi_old);
+    keep3(p->n, touches, t->n, n_old);
     if (!ledger)
         return;
     brc_lanes part[3], along = brc_lanes_dot(du, t->n);
     for (int k = 0; k < 3; k++)
         part[k] = (old * before[k] + t->weight * xi[k]);
     brc_lanes work = brc_lanes_dot(part, du) - along * brc_lanes_dot(part, t->n);
-    s->slid += 0.5 * block->kt * work;
+    s->slid += 0.5 * row->kt * work;
     s->stored +=
-        0.5 * block->kt * (t->weight * brc_lanes_dot(xi, xi) - old * brc_lanes_dot(before, before));
+        0.5 * row->kt * (t->weight * brc_lanes_dot(xi, xi) - old * brc_lanes_dot(before, before));
 }
 
 BRC_LANES_INLINE void push_viscous(struct sums *s, const struct poly_touches *t,
-                                   const struct row_of_points *row, double kn, const brc_lanes u[3],
+                                   const struct row_of_points *row, const brc_lanes u[3],
                                    const brc_lanes arm[3])
 {
+    const double kn = row->kn;
     brc_lanes f[3], vn = brc_lanes_dot(u, t->n), gt = t->weight * row->gt;
     brc_lanes normal =
         brc_lanes_max(-t->weight * row->gn * vn, -kn * t->weight * t->delta); /* eq:gt12:10 */
@@ -352,14 +135,16 @@ BRC_LANES_INLINE void push_viscous(struct sums *s, const struct poly_touches *t,
 
 BRC_LANES_INLINE void push_group(const struct poly_block *block, struct sums *s,
                                  const struct poly_touches *t, const struct row_of_points *row,
-                                 const int32_t *p, const bool friction, const bool viscous,
+                                 const struct springs *p, const bool friction, const bool viscous,
                                  const bool ledger)
 {
-    brc_lanes arm[3], back[3], u[3], du[3];
+    brc_lanes arm[3], back[3], u[3], du[3], old = brc_lanes_at(p->weight);
     brc_mask touches = positive(t->weight);
+    brc_lanes_put(p->weight, brc_lanes_pick(touches, t->weight, old));
+    s->fresh |= touches & ~positive(old);
     sub(arm, t->x, row->xa);
     sub(back, arm, row->x);
-    push_normal(s, t, block->kn, arm);
+    push_normal(s, t, row->kn, arm);
     brc_lanes stiff = brc_lanes_where(touches, brc_lanes_all(block->stiff));
     s->k[0] += stiff;
     s->k[1] += stiff * brc_lanes_dot(arm, arm);
@@ -370,50 +155,129 @@ BRC_LANES_INLINE void push_group(const struct poly_block *block, struct sums *s,
     add(u, u, row->slip);
     if (friction) {
         scale(du, u, brc_lanes_all(block->sim->dt));
-        push_shear(block, s, t, row, du, arm, p, ledger);
+        push_shear(p, s, t, row, du, arm, brc_lanes_where(touches, old), ledger);
     }
     if (viscous)
-        push_viscous(s, t, row, block->kn, u, arm);
+        push_viscous(s, t, row, u, arm);
 }
 
-BRC_LANES_INLINE void add_wrench(struct poly_wrenches *to, const struct poly_wrenches *w, int lane)
+BRC_LANES_INLINE void row_of_segment(struct row_of_points *row, const struct poly_block *block,
+                                     const struct poly_segment *segment)
 {
-    for (int k = 0; k < 3; k++) {
-        to->f[k][lane] += brc_lanes_sum(w->f[k]);
-        to->m[k][lane] += brc_lanes_sum(w->m[k]);
+    const struct poly_row_group *g = &block->group[segment->row / BRC_LANES];
+    int lane = segment->row % BRC_LANES;
+    spread(row->xa, g->xa, lane);
+    spread(row->x, g->x, lane);
+    spread(row->slip, g->slip, lane);
+    spread(row->turn, g->turn, lane);
+    for (int k = 0; k < 3; k++)
+        spread(row->slope[k], g->slope[k], lane);
+    row->gn = brc_lanes_all(g->gn[lane]);
+    row->gt = brc_lanes_all(g->gt[lane]);
+    row->kn = block->kn;
+    row->kt = block->kt;
+    row->limit = poly_params_of(block->sim)->mu * block->kn / block->kt;
+}
+
+/* Sums over lanes to where a row keeps them. */
+BRC_LANES_INLINE void add_sums(double *to, const brc_lanes lanes[BRC_LANES])
+{
+    brc_lanes_put(to, brc_lanes_at(to) + brc_lanes_sums(lanes));
+}
+
+BRC_LANES_INLINE void add_row(struct poly_block *block, int32_t row, const struct sums *s,
+                              const bool friction, const bool viscous)
+{
+    const brc_lanes none = brc_lanes_all(0), *f = s->normal.f, *m = s->normal.m, *sf = s->shear.f,
+                    *sm = s->shear.m, *vf = s->viscous.f, *vm = s->viscous.m;
+    double *sum = block->sum[row];
+    add_sums(sum, (const brc_lanes[]){f[0], f[1], f[2], m[0]});
+    add_sums(sum + 4, (const brc_lanes[]){m[1], m[2], sf[0], sf[1]});
+    if (friction)
+        add_sums(sum + 8, (const brc_lanes[]){sf[2], sm[0], sm[1], sm[2]});
+    add_sums(sum + POLY_SUM_K, (const brc_lanes[]){s->k[0], s->k[1], s->k[2], s->stored});
+    add_sums(sum + POLY_SUM_SLID, (const brc_lanes[]){s->slid, vf[0], vf[1], vf[2]});
+    if (viscous)
+        add_sums(sum + POLY_SUM_VISCOUS + 3, (const brc_lanes[]){vm[0], vm[1], vm[2], none});
+    block->nearest[row] =
+        poly_least(block->nearest[row],
+                   poly_least(poly_least(s->gap[0], s->gap[1]), poly_least(s->gap[2], s->gap[3])));
+}
+
+/* Where some points of a segment do not touch. */
+BRC_LANES_INLINE bool has_apart(const struct poly_block *block, const struct poly_segment *segment)
+{
+    brc_mask apart = {0};
+    for (int32_t k = 0; k < segment->n; k += BRC_LANES)
+        apart |= brc_lanes_first(segment->n - k) &
+                 ~positive(block->touch[(segment->slot + k) / BRC_LANES].weight);
+    return brc_lanes_any(apart);
+}
+
+/* Four points that do not follow each other, from and to their columns. */
+struct together {
+    double xi[BRC_LANES][3], n[BRC_LANES][3], weight[BRC_LANES];
+};
+
+BRC_LANES_INLINE void put_together(struct together *to, const struct poly_points *points,
+                                   const int32_t *p, int32_t n)
+{
+    memset(to, 0, sizeof *to);
+    for (int32_t i = 0; i < n && i < BRC_LANES; i++) {
+        brc_copy(to->xi[i], points->xi[p[i]]);
+        brc_copy(to->n[i], points->n[p[i]]);
+        to->weight[i] = points->weight[p[i]];
     }
 }
 
-BRC_LANES_INLINE void points_of_row(struct poly_block *block, const struct poly_segment *segment,
+BRC_LANES_INLINE void put_back(const struct poly_points *points, const struct together *from,
+                               const int32_t *p, int32_t n)
+{
+    for (int32_t i = 0; i < n && i < BRC_LANES; i++) {
+        brc_copy(points->xi[p[i]], from->xi[i]);
+        brc_copy(points->n[p[i]], from->n[i]);
+        points->weight[p[i]] = from->weight[i];
+    }
+}
+
+/* Touches of slots k to k + 3 of a segment, into the sums. */
+BRC_LANES_INLINE void push_slots(const struct poly_block *block, struct sums *s,
+                                 const struct poly_segment *segment, int32_t k,
+                                 const struct row_of_points *row, const bool friction,
+                                 const bool viscous, const bool ledger)
+{
+    const struct poly_points *points = block->sim->pairs.point_columns;
+    const int32_t slot = segment->slot + k, p = segment->point + k;
+    struct poly_touches t = block->touch[slot / BRC_LANES];
+    brc_mask taken = brc_lanes_first(segment->n - k);
+    struct springs springs = {points->xi + p, points->n + p, points->weight + p};
+    struct together together;
+    t.delta = brc_lanes_where(taken, t.delta);
+    t.weight = brc_lanes_where(taken, t.weight);
+    if (!segment->follow) {
+        put_together(&together, points, block->point + slot, segment->n - k);
+        springs = (struct springs){together.xi, together.n, together.weight};
+    }
+    push_group(block, s, &t, row, &springs, friction, viscous, ledger);
+    if (!segment->follow)
+        put_back(points, &together, block->point + slot, segment->n - k);
+}
+
+BRC_LANES_INLINE void points_of_row(struct poly_block *block, struct poly_segment *segment,
                                     const bool friction, const bool viscous, const bool ledger)
 {
-    struct poly_row_group *g = &block->group[segment->row / BRC_LANES];
-    int lane = segment->row % BRC_LANES;
     struct row_of_points row;
     struct sums s;
+    if (has_apart(block, segment))
+        poly_drop_apart(block, segment);
+    row_of_segment(&row, block, segment);
     clear((brc_lanes *)&s, sizeof s);
-    s.gap = brc_lanes_all(g->gap[lane]);
-    spread(row.xa, g->xa, lane);
-    spread(row.x, g->x, lane);
-    spread(row.slip, g->slip, lane);
-    spread(row.turn, g->turn, lane);
-    for (int k = 0; k < 3; k++)
-        spread(row.slope[k], g->slope[k], lane);
-    row.gn = brc_lanes_all(g->gn[lane]);
-    row.gt = brc_lanes_all(g->gt[lane]);
-    for (int32_t slot = segment->slot; slot < segment->slot + segment->n; slot += BRC_LANES)
-        push_group(block, &s, &block->touch[slot / BRC_LANES], &row, block->point + slot, friction,
-                   viscous, ledger);
-    add_wrench(&g->normal, &s.normal, lane);
-    if (friction)
-        add_wrench(&g->shear, &s.shear, lane);
-    if (viscous)
-        add_wrench(&g->viscous, &s.viscous, lane);
-    for (int k = 0; k < 3; k++)
-        g->k[k][lane] += brc_lanes_sum(s.k[k]);
-    g->gap[lane] = poly_least(poly_least(s.gap[0], s.gap[1]), poly_least(s.gap[2], s.gap[3]));
-    g->stored[lane] += brc_lanes_sum(s.stored);
-    g->slid[lane] += brc_lanes_sum(s.slid);
+    s.gap = brc_lanes_all(HUGE_VAL);
+    s.fresh = (brc_mask){0};
+    for (int32_t k = 0; k < segment->n; k += BRC_LANES)
+        push_slots(block, &s, segment, k, &row, friction, viscous, ledger);
+    segment->fresh = brc_lanes_any(s.fresh);
+    add_row(block, segment->row, &s, friction, viscous);
 }
 
 BRC_LANES_INLINE void points_kernel(struct poly_block *block, const bool friction,
@@ -425,6 +289,17 @@ BRC_LANES_INLINE void points_kernel(struct poly_block *block, const bool frictio
 
 /* --- sums of rows ----------------------------------------------------------------------------- */
 
+/* The points' sums of a group's rows. */
+BRC_LANES_INLINE void sums_of_group(brc_lanes r[POLY_SUMS], const struct poly_block *block,
+                                    int32_t group, int n)
+{
+    for (int i = 0; i < n; i += BRC_LANES) {
+        for (int row = 0; row < BRC_LANES; row++)
+            r[i + row] = brc_lanes_at(&block->sum[BRC_LANES * group + row][i]);
+        brc_lanes_transpose(r + i);
+    }
+}
+
 /* Power of force and moments of a wrench on both bodies, for the offset x of the centres. */
 BRC_LANES_INLINE brc_lanes power(const struct poly_wrenches *w, const struct poly_row_group *g,
                                  const brc_lanes x[3])
@@ -435,43 +310,78 @@ BRC_LANES_INLINE brc_lanes power(const struct poly_wrenches *w, const struct pol
     return brc_lanes_dot(w->f, g->dv) - brc_lanes_dot(w->m, g->wa) + brc_lanes_dot(tb, g->wb);
 }
 
-/* Work taken up by the source of a wrench over the step, by the trapezoid rule of ledger.h. */
-BRC_LANES_INLINE brc_lanes work(const double (*old)[6], const struct poly_wrenches *now,
+/* Work taken up by the source of a wrench over the step, by the trapezoid rule of ledger.h; the
+ * wrench becomes the old one. */
+BRC_LANES_INLINE brc_lanes work(double (*old)[6], const struct poly_wrenches *now,
                                 const struct poly_row_group *g, const int32_t row[BRC_LANES],
                                 double dt)
 {
     struct poly_wrenches w;
-    brc_lanes x_old[3];
-    for (int k = 0; k < 3; k++) {
-        w.f[k] = (brc_lanes){old[row[0]][k], old[row[1]][k], old[row[2]][k], old[row[3]][k]};
-        w.m[k] = (brc_lanes){old[row[0]][3 + k], old[row[1]][3 + k], old[row[2]][3 + k],
-                             old[row[3]][3 + k]};
+    brc_lanes x_old[3], all[6];
+    brc_lanes_gather6(all, old, row);
+    set(w.f, all[0], all[1], all[2]);
+    set(w.m, all[3], all[4], all[5]);
+    for (int k = 0; k < 3; k++)
         x_old[k] = g->x[k] - g->dv[k] * dt;
-    }
+    set(all, now->f[0], now->f[1], now->f[2]);
+    set(all + 3, now->m[0], now->m[1], now->m[2]);
+    brc_lanes_scatter6(old, row, all);
     return -0.5 * dt * (power(&w, g, x_old) + power(now, g, g->x));
+}
+
+BRC_LANES_INLINE void works_of_group(struct poly_block *block, struct poly_row_group *g,
+                                     const int32_t *row, const struct poly_wrenches *normal,
+                                     const struct poly_wrenches *sticky, const bool viscous)
+{
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    double dt = block->sim->dt;
+    g->work_normal = work(rows->normal_old, normal, g, row, dt);
+    g->work_bond = work(rows->bond_old, &g->bond, g, row, dt);
+    if (viscous)
+        g->work_viscous = work(rows->viscous_old, sticky, g, row, dt);
+}
+
+/* Forces and moments of the rows of a group, and what else they need. */
+BRC_LANES_INLINE void finish_group(struct poly_block *block, int32_t group, const bool ledger,
+                                   const bool viscous)
+{
+    struct brc_contacts *c = &block->sim->pairs;
+    struct poly_row_group *g = &block->group[group];
+    const int32_t *row = block->row + BRC_LANES * group;
+    brc_lanes s[POLY_SUMS], f[3], ta[3], tb[3];
+    struct poly_wrenches normal, sticky;
+    sums_of_group(s, block, group, viscous ? POLY_SUMS : POLY_SUM_SLID + 4);
+    set(normal.f, s[0], s[1], s[2]);
+    set(normal.m, s[3], s[4], s[5]);
+    set(sticky.f, s[POLY_SUM_VISCOUS], s[POLY_SUM_VISCOUS + 1], s[POLY_SUM_VISCOUS + 2]);
+    for (int k = 0; k < 3; k++) {
+        sticky.m[k] = viscous ? s[POLY_SUM_VISCOUS + 3 + k] : brc_lanes_all(0);
+        f[k] = g->bond.f[k] + normal.f[k] + s[POLY_SUM_SHEAR + k];
+        ta[k] = g->bond.m[k] + normal.m[k] + s[POLY_SUM_SHEAR + 3 + k];
+        if (viscous) {
+            f[k] += sticky.f[k];
+            ta[k] += sticky.m[k];
+        }
+        ta[k] = -ta[k];
+        g->k[k] += s[POLY_SUM_K + k];
+    }
+    brc_lanes_cross(tb, g->x, f);
+    for (int k = 0; k < 3; k++)
+        tb[k] = -ta[k] - tb[k];
+    brc_lanes_scatter3(c->f, row, f);
+    brc_lanes_scatter3(c->ta, row, ta);
+    brc_lanes_scatter3(c->tb, row, tb);
+    g->gap = brc_lanes_min(g->gap, brc_lanes_at(block->nearest + BRC_LANES * group));
+    g->stored = s[POLY_SUM_STORED];
+    g->slid = s[POLY_SUM_SLID];
+    if (ledger)
+        works_of_group(block, g, row, &normal, &sticky, viscous);
 }
 
 BRC_LANES_INLINE void finish_kernel(struct poly_block *block, const bool ledger, const bool viscous)
 {
-    const struct poly_rows *rows = block->sim->pairs.model_columns;
-    double dt = block->sim->dt;
-    for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++) {
-        struct poly_row_group *g = &block->group[group];
-        const int32_t *row = block->row + BRC_LANES * group;
-        for (int k = 0; k < 3; k++) {
-            g->total.f[k] = g->bond.f[k] + g->normal.f[k] + g->shear.f[k] + g->viscous.f[k];
-            g->total.m[k] = -(g->bond.m[k] + g->normal.m[k] + g->shear.m[k] + g->viscous.m[k]);
-        }
-        brc_lanes_cross(g->tb, g->x, g->total.f);
-        for (int k = 0; k < 3; k++)
-            g->tb[k] = -g->total.m[k] - g->tb[k];
-        if (!ledger)
-            continue;
-        g->work_normal = work((const double(*)[6])rows->normal_old, &g->normal, g, row, dt);
-        g->work_bond = work((const double(*)[6])rows->bond_old, &g->bond, g, row, dt);
-        if (viscous)
-            g->work_viscous = work((const double(*)[6])rows->viscous_old, &g->viscous, g, row, dt);
-    }
+    for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++)
+        finish_group(block, group, ledger, viscous);
 }
 
 /* --- choice ----------------------------------------------------------------------------------- */
@@ -486,6 +396,7 @@ KERNEL(motion_torsion, motion_kernel(block, true))
 KERNEL(touch, touch_kernel(block, false))
 KERNEL(touch_merged, touch_kernel(block, true))
 KERNEL(finish, finish_kernel(block, false, false))
+KERNEL(finish_sticky, finish_kernel(block, false, true))
 KERNEL(finish_ledger, finish_kernel(block, true, false))
 KERNEL(finish_viscous, finish_kernel(block, true, true))
 KERNEL(points_000, points_kernel(block, false, false, false))
@@ -508,6 +419,8 @@ static struct poly_kernels choose_kernels(const struct brc_sim *sim)
     static poly_kernel *const points[2][2][2] = {
         {{points_000, points_000}, {points_010, points_010}},
         {{points_100, points_101}, {points_110, points_111}}};
+    static poly_kernel *const finishes[2][2] = {{finish, finish_ledger},
+                                                {finish_sticky, finish_viscous}};
     const struct poly_params *p = poly_params_of(sim);
     bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
     bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
@@ -515,9 +428,7 @@ static struct poly_kernels choose_kernels(const struct brc_sim *sim)
                                  .motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
                                  .touch = p->features == POLY_MERGED ? touch_merged : touch,
                                  .points = points[friction][viscous][ledger],
-                                 .finish = !ledger   ? finish
-                                           : viscous ? finish_viscous
-                                                     : finish_ledger};
+                                 .finish = finishes[viscous][ledger]};
 }
 
 #endif

@@ -76,6 +76,18 @@ static void select_kernels(struct brc_sim *sim, void *state)
     }
 }
 
+/* Items are not saved: they are made anew. */
+static int restore(struct brc_sim *sim, void *state)
+{
+    const struct poly_rows *rows = sim->pairs.model_columns;
+    const struct poly_points *points = sim->pairs.point_columns;
+    (void)state;
+    for (size_t p = 0; p < sim->pairs.points.n; p++)
+        points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
+    memset(rows->ready, 0, sim->pairs.n * sizeof *rows->ready);
+    return 0;
+}
+
 static const char *choice(const struct poly_params *p, const char *key, char *buffer, size_t size)
 {
     const struct brc_param_list list = BRC_PARAMS(param_list, struct poly_params);
@@ -110,6 +122,7 @@ const struct brc_model brc_model_polyhedra = {
     .params = BRC_PARAMS(param_list, struct poly_params),
     .contact_fields = BRC_FIELDSET(row_fields, struct poly_rows),
     .point_fields = BRC_FIELDSET(point_fields, struct poly_points),
+    .point_lanes = BRC_LANES,
     .flags = BRC_MODEL_ROTATES | BRC_MODEL_ORIENTED,
     .shape = poly_shape,
     .bond = poly_open_bonds,
@@ -122,5 +135,6 @@ const struct brc_model brc_model_polyhedra = {
     .create = create,
     .free = release,
     .select = select_kernels,
+    .restore = restore,
     .describe = describe,
 };

@@ -56,6 +56,8 @@ struct poly_params {
     SCALAR(double, wake, BRC_STATE, "m", "no features listed: travel of a and b to list anew")  \
     SCALAR(double, room, BRC_STATE, "m", "features listed: relative path left to list anew")    \
     SCALAR(int32_t, awake, BRC_STATE, "1", "points that are looked at; the others sleep")       \
+    SCALAR(double, calm, BRC_SCRATCH, "m", "items stay right while there is more room than so") \
+    SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")      \
     VECTOR(double, ca, 3, BRC_STATE, "m", "material point of the bond in the frame of a")       \
     VECTOR(double, cb, 3, BRC_STATE, "m", "the same in the frame of b")                         \
     VECTOR(double, na, 3, BRC_STATE, "1", "normal of the face of a, outward, in its frame")     \
@@ -84,6 +86,7 @@ struct poly_rows {
            "vertices that may lower the weight; -1: no more; -2 first: too many to name")      \
     SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room") \
     SCALAR(double, hold, BRC_STATE, "m", "the place is sure while the row has more room")      \
+    VECTOR(int32_t, item, POLY_ITEM, BRC_SCRATCH, "1", "what the touch is computed from")      \
     SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                             \
     VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                                 \
     VECTOR(double, xi, 3, BRC_STATE, "m", "tangential displacement, eq 9")
@@ -139,6 +142,12 @@ int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row);
 void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
 /* A point that is awake and does not touch sleeps until its row has no more than `sleep` room. */
 void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
+
+/* points.c: lists the points of row i of the block that may touch; computes all that is listed;
+ * takes the slots of a segment out that do not touch. */
+void poly_list_points(struct poly_block *block, int32_t i);
+void poly_work_off(struct poly_block *block);
+void poly_drop_apart(struct poly_block *block, struct poly_segment *segment);
 
 /* forces.c, walls.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);

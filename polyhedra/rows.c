@@ -233,6 +233,7 @@ static void copy_point(const struct poly_points *points, size_t to, size_t from)
     points->i[to] = points->i[from];
     points->j[to] = points->j[from];
     memmove(points->near[to], points->near[from], sizeof points->near[from]);
+    memmove(points->item[to], points->item[from], sizeof points->item[from]);
     points->sleep[to] = points->sleep[from];
     points->hold[to] = points->hold[from];
     points->weight[to] = points->weight[from];
@@ -262,6 +263,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     memcpy(points->near[p], f->near, sizeof f->near);
     points->sleep[p] = sleep;
     points->hold[p] = hold;
+    points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
     points->active[p] = 0;
     points->weight[p] = 0;
     brc_set(points->n[p], 0, 0, 0);
@@ -294,6 +296,7 @@ void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
         for (; p > first && comes_before(&f, points, p - 1, merged); p--)
             copy_point(points, p, p - 1);
         set_point(points, p, &f, rows->room[row], hold);
+        rows->ready[row] = 0;
     }
     rows->awake[row] = (int32_t)(next - first);
 }
@@ -310,6 +313,7 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
     for (; p + 1 < end && (p + 1 < awake || points->sleep[p + 1] > sleep); p++)
         copy_point(points, p, p + 1);
     set_point(points, p, &f, sleep, hold);
+    rows->ready[row] = 0;
 }
 
 /* Pairs that may touch at once first, then by the path that they are free for. */
@@ -343,13 +347,15 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
         size_t p = first;
         while (p < first + kept && !is_same(points, p, &list->feature[k], merged))
             p++;
-        if (p < first + kept)
+        if (p < first + kept) {
             memcpy(points->near[p], list->feature[k].near, sizeof points->near[p]);
-        else if (next < first + n)
+            points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
+        } else if (next < first + n)
             set_point(points, next++, &list->feature[k], room - list->feature[k].free, HUGE_VAL);
     }
     c->np[row] = (int32_t)(next - first);
     rows->awake[row] = (int32_t)kept;
+    rows->ready[row] = 0;
     return 0;
 }
 

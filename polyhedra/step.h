@@ -24,6 +24,15 @@ struct poly_spring_law {
     double gn, gt; /* N s/m: viscosity x effective mass */
 };
 
+/* Of grain pairs, without viscosity. */
+static inline struct poly_spring_law poly_pair_law(const struct brc_sim *sim)
+{
+    const struct poly_params *p = poly_params_of(sim);
+    return (struct poly_spring_law){.kn = poly_pair_stiffness(p->kn, p->kn),
+                                    .kt = poly_pair_stiffness(p->kt, p->kt),
+                                    .mu = p->mu};
+}
+
 /* Sums over a row. */
 struct poly_sums {
     struct poly_wrench normal, shear, viscous;

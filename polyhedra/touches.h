@@ -58,22 +58,25 @@ BRC_LANES_INLINE brc_mask positive(brc_lanes a)
     return brc_lanes_less(brc_lanes_all(0), a);
 }
 
-/* What memset would do, by stores of lanes. */
+/* What memset would do, by stores of lanes: compilers must not see that it is 0, lest they call it.
+ */
 BRC_LANES_INLINE void clear(brc_lanes *x, size_t size)
 {
+    double none = 0;
+    __asm__("" : "+x"(none));
     for (size_t i = 0; i < size / sizeof *x; i++)
-        x[i] = brc_lanes_all(0);
+        x[i] = brc_lanes_all(none);
 }
 
 /* --- touches ---------------------------------------------------------------------------------- */
 
-/* Lane i of four touches to their slots. */
+/* Lane i of four touches to the slot of its task. */
 BRC_LANES_INLINE void put_touches(struct poly_block *block, const struct poly_touches *t,
-                                  const int32_t slot[BRC_LANES], int32_t n)
+                                  const struct poly_task *task)
 {
-    for (int32_t i = 0; i < n; i++) {
-        struct poly_touches *to = &block->touch[slot[i] / BRC_LANES];
-        int lane = slot[i] % BRC_LANES;
+    for (int32_t i = 0; i < BRC_LANES; i++) {
+        struct poly_touches *to = &block->touch[task[i].slot / BRC_LANES];
+        int lane = task[i].slot % BRC_LANES;
         to->delta[lane] = t->delta[i];
         to->weight[lane] = t->weight[i];
         for (int k = 0; k < 3; k++) {
@@ -112,22 +115,21 @@ BRC_LANES_INLINE brc_lanes smooth(brc_lanes x, brc_lanes *slope)
 
 /* Distance s and outward normal n of v at a place that its foot has for sure. */
 BRC_LANES_INLINE void foot_known(brc_lanes *s, brc_lanes n[3], const struct poly_block *block,
-                                 const brc_lanes v[3], const struct poly_vertex_item *const at[],
-                                 const bool flat)
+                                 const brc_lanes v[3], const int32_t *const item[], const bool flat)
 {
     double(*world)[3] = block->st->world;
     int32_t i[2][BRC_LANES];
     for (int k = 0; k < BRC_LANES; k++) {
-        i[0][k] = at[k]->place[0];
-        i[1][k] = at[k]->place[1];
+        i[0][k] = item[k][POLY_ITEM_PLACE];
+        i[1][k] = item[k][POLY_ITEM_PLACE + 1];
     }
     if (flat) {
-        const double(*plane)[4] = (const double(*)[4])block->st->plane;
-        brc_lanes d;
-        for (int k = 0; k < 3; k++)
-            n[k] = (brc_lanes){plane[i[0][0]][k], plane[i[0][1]][k], plane[i[0][2]][k],
-                               plane[i[0][3]][k]};
-        d = (brc_lanes){plane[i[0][0]][3], plane[i[0][1]][3], plane[i[0][2]][3], plane[i[0][3]][3]};
+        brc_lanes plane[4];
+        for (int k = 0; k < BRC_LANES; k++)
+            plane[k] = brc_lanes_at(block->st->plane[i[0][k]]);
+        brc_lanes_transpose(plane);
+        brc_lanes d = plane[3];
+        set(n, plane[0], plane[1], plane[2]);
         *s = brc_lanes_dot(n, v) - d;
         return;
     }
@@ -144,32 +146,32 @@ BRC_LANES_INLINE void foot_known(brc_lanes *s, brc_lanes n[3], const struct poly
 }
 
 /* Number of vertex i of the other core that may lower the weight, or -1. */
-BRC_LANES_INLINE int32_t near_vertex(const struct poly_vertex_item *at, int32_t i, const bool all)
+BRC_LANES_INLINE int32_t near_vertex(const int32_t *item, int32_t i, const bool all)
 {
+    const int32_t *near = item + POLY_ITEM_NEAR;
     if (all)
-        return i < at->n ? at->first + i : -1;
-    return at->near[i] >= 0 ? at->first + at->near[i] : -1;
+        return i < near[1] ? near[0] + i : -1;
+    return near[i];
 }
 
 /* poly_weigh_vertex with up to n_near vertices near; all: all of them. */
 BRC_LANES_INLINE void weigh_vertex(struct poly_touches *t, const struct poly_block *block,
                                    const brc_lanes v[3], brc_lanes sign,
-                                   const struct poly_vertex_item *const at[], int32_t n_near,
-                                   const bool all)
+                                   const int32_t *const item[], int32_t n_near, const bool all)
 {
     const double rest2 = block->rest * block->rest, ell2 = block->ell * block->ell;
     brc_lanes product = brc_lanes_all(1), total[3], arm[3];
     clear(total, sizeof total);
     for (int k = 0; k < BRC_LANES && all; k++)
-        n_near = at[k]->n > n_near ? at[k]->n : n_near;
+        n_near = item[k][POLY_ITEM_NEAR + 1] > n_near ? item[k][POLY_ITEM_NEAR + 1] : n_near;
     for (int32_t i = 0; i < n_near; i++) {
         int32_t u[BRC_LANES];
         brc_mask is_near;
         brc_lanes r[3], slope;
         for (int k = 0; k < BRC_LANES; k++) {
-            u[k] = near_vertex(at[k], i, all);
+            u[k] = near_vertex(item[k], i, all);
             is_near[k] = u[k] < 0 ? 0 : -1;
-            u[k] = u[k] < 0 ? at[k]->vertex : u[k];
+            u[k] = u[k] < 0 ? item[k][POLY_ITEM_VERTEX] : u[k];
         }
         brc_lanes_gather3(r, block->st->world, u);
         sub(r, v, r);
@@ -185,35 +187,46 @@ BRC_LANES_INLINE void weigh_vertex(struct poly_touches *t, const struct poly_blo
     brc_lanes_cross(t->c, arm, t->g);
 }
 
+/* Ends a list at a whole group: what is left over goes to slots that nobody reads. Returns its
+ * number of tasks; the list is empty then. */
+BRC_LANES_INLINE int32_t end_list(struct poly_block *block, int list)
+{
+    struct poly_task *task = block->task[list];
+    int32_t n = block->n_tasks[list];
+    for (int32_t k = n; k % BRC_LANES != 0; k++)
+        task[k] = (struct poly_task){POLY_SPARE, task[n - 1].point};
+    block->n_tasks[list] = 0;
+    return n;
+}
+
 BRC_LANES_INLINE void vertex_kernel(struct poly_block *block, int list, const bool flat,
                                     const int32_t n_near, const bool all)
 {
-    const struct poly_vertex_item *item = block->vertex[list];
-    int32_t n = block->n_vertices[list];
+    const struct poly_points *points = block->sim->pairs.point_columns;
+    const struct poly_task *task = block->task[list];
+    int32_t n = end_list(block, list);
     for (int32_t first = 0; first < n; first += BRC_LANES) {
-        const struct poly_vertex_item *at[BRC_LANES];
-        int32_t vertex[BRC_LANES], slot[BRC_LANES];
+        const int32_t *item[BRC_LANES];
+        int32_t vertex[BRC_LANES];
         brc_lanes v[3], s, out[3], sign;
         struct poly_touches t;
         for (int k = 0; k < BRC_LANES; k++) {
-            at[k] = &item[first + k < n ? first + k : first];
-            vertex[k] = at[k]->vertex;
-            slot[k] = at[k]->slot;
-            sign[k] = at[k]->sign;
+            item[k] = points->item[task[first + k].point];
+            vertex[k] = item[k][POLY_ITEM_VERTEX];
+            sign[k] = item[k][POLY_ITEM_LIST] & POLY_OF_A ? -1 : 1;
         }
         brc_lanes_gather3(v, block->st->world, vertex);
-        foot_known(&s, out, block, v, at, flat);
+        foot_known(&s, out, block, v, item, flat);
         t.delta = block->rest - s; /* eq:gt12:5 */
         scale(t.n, out, sign);     /* eq:gt12:3 */
         for (int k = 0; k < 3; k++)
             t.x[k] = v[k] - 0.5 * s * out[k];
         full_weight(&t);
         if (n_near > 0 || all)
-            weigh_vertex(&t, block, v, sign, at, n_near, all);
+            weigh_vertex(&t, block, v, sign, item, n_near, all);
         hide_apart(&t, brc_lanes_less(s, brc_lanes_all(block->rest))); /* eq:gt12:2 */
-        put_touches(block, &t, slot, n - first < BRC_LANES ? n - first : BRC_LANES);
+        put_touches(block, &t, task + first);
     }
-    block->n_vertices[list] = 0;
 }
 
 /* poly_foot_weight */
@@ -356,28 +369,30 @@ BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_
 BRC_LANES_INLINE void edge_kernel(struct poly_block *block, const bool merged)
 {
     struct poly_points *points = block->sim->pairs.point_columns;
-    int32_t n = block->n_edges;
-    for (int32_t first = 0; first < n; first += BRC_LANES) {
-        int32_t end[4][BRC_LANES], slot[BRC_LANES];
+    const struct poly_task *task = block->task[POLY_CROSSING];
+    int32_t n = end_list(block, POLY_CROSSING);
+    for (int32_t first = 0; first < n; first += BRC_LANES, task += BRC_LANES) {
+        int32_t end[4][BRC_LANES], *item[BRC_LANES];
         brc_lanes p[4][3], side, reach;
         struct poly_touches t;
         for (int k = 0; k < BRC_LANES; k++) {
-            const struct poly_edge_item *at = &block->edge[first + k < n ? first + k : first];
-            slot[k] = at->slot;
-            reach[k] = at->reach;
-            side[k] = at->side == 0 ? 0 : at->side == 1 ? 1 : -1;
+            item[k] = points->item[task[k].point];
+            side[k] = item[k][POLY_ITEM_SIDE];
+            reach[k] = poly_item_reach(item[k]);
             for (int j = 0; j < 4; j++)
-                end[j][k] = at->end[j];
+                end[j][k] = item[k][POLY_ITEM_END + j];
         }
         for (int j = 0; j < 4; j++)
             brc_lanes_gather3(p[j], block->st->world, end[j]);
         hide_apart(&t, touch_edges(&t, block, p, &side, reach, merged));
-        int32_t n_here = n - first < BRC_LANES ? n - first : BRC_LANES;
-        put_touches(block, &t, slot, n_here);
-        for (int32_t k = 0; k < n_here; k++)
-            points->active[block->point[slot[k]]] = side[k] < 0 ? 2 : 1;
+        put_touches(block, &t, task);
+        for (int32_t k = 0; k < BRC_LANES; k++) {
+            if (item[k][POLY_ITEM_SIDE] != 0)
+                continue;
+            item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : 1;
+            points->active[task[k].point] = side[k] < 0 ? 2 : 1;
+        }
     }
-    block->n_edges = 0;
 }
 
 BRC_LANES_INLINE void touch_kernel(struct poly_block *block, const bool merged)

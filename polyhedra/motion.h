@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Motion and bonds of the rows of a block, four at a time. */
+#ifndef POLY_MOTION_H
+#define POLY_MOTION_H
+
+#include "polyhedra/touches.h"
+
+#include <string.h>
+
+/* The rows of a group, as gathers want them. */
+struct numbers {
+    int32_t row[BRC_LANES], a[BRC_LANES], b[BRC_LANES];
+};
+
+BRC_LANES_INLINE void numbers_of(struct numbers *i, const struct poly_block *block, int32_t group)
+{
+    memcpy(i->row, block->row + BRC_LANES * group, sizeof i->row);
+    memcpy(i->a, block->a + BRC_LANES * group, sizeof i->a);
+    memcpy(i->b, block->b + BRC_LANES * group, sizeof i->b);
+}
+
+/* r += s (w x (w x a)) */
+BRC_LANES_INLINE void add_double_cross(brc_lanes r[3], brc_lanes s, const brc_lanes w[3],
+                                       const brc_lanes a[3])
+{
+    brc_lanes c[3];
+    brc_lanes_cross(c, w, a);
+    brc_lanes_cross(c, w, c);
+    axpy(r, s, c);
+}
+
+/* Velocity of b relative to a with arms at the middle of the step, so that a pair that turns as one
+ * body does not slip but for the third order of the step's angle: for an arm r from a,
+ * dv + (wb - h wb wb)(r - x) - (wa - h wa wa) r, with cross products for products and h = dt / 2.
+ */
+BRC_LANES_INLINE void slip_of_row(struct poly_row_group *g, double dt)
+{
+    const brc_lanes *wa = g->wa, *wb = g->wb, h = brc_lanes_all(0.5 * dt);
+    brc_lanes dw[3], c[3];
+    brc_lanes_cross(c, wb, g->x);
+    sub(g->slip, g->dv, c);
+    add_double_cross(g->slip, h, wb, g->x);
+    sub(dw, wb, wa);
+    brc_lanes widen = h * (brc_lanes_dot(wb, wb) - brc_lanes_dot(wa, wa));
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            g->slope[i][j] = -h * (wb[i] * wb[j] - wa[i] * wa[j]);
+        g->slope[i][i] += widen;
+        g->slope[i][(i + 1) % 3] -= dw[(i + 2) % 3];
+        g->slope[i][(i + 2) % 3] += dw[(i + 1) % 3];
+        g->turn[i] = brc_lanes_all(0.25 * dt) * (wa[i] + wb[i]);
+    }
+}
+
+/* Bound of the path that points of b have made in the frame of a in this step. Motions that both
+ * share, turns included, do not count; the last term is of second order in the turn. a's vertices
+ * near b move with it too, so its reach is taken larger by the range of a contact. */
+BRC_LANES_INLINE brc_lanes relative_path(const struct poly_row_group *g, const brc_lanes reach_a,
+                                         const brc_lanes reach_b, double dt)
+{
+    brc_lanes u[3], dw[3];
+    brc_lanes_cross(u, g->x, g->wa);
+    add(u, u, g->dv);
+    sub(dw, g->wb, g->wa);
+    brc_lanes speed =
+        brc_lanes_sqrt(brc_lanes_dot(u, u)) + reach_b * brc_lanes_sqrt(brc_lanes_dot(dw, dw));
+    return 1.1 * dt * speed + dt * dt * brc_lanes_dot(g->wa, g->wa) * (reach_a + 2 * reach_b);
+}
+
+BRC_LANES_INLINE void motion_of_group(struct poly_block *block, struct poly_row_group *g,
+                                      const struct numbers *i)
+{
+    const struct brc_bodies *bodies = &block->sim->bodies;
+    brc_lanes xb[3], va[3], vb[3];
+    brc_lanes_gather3(g->xa, bodies->x, i->a);
+    brc_lanes_gather3(xb, bodies->x, i->b);
+    brc_lanes_gather3(va, bodies->v, i->a);
+    brc_lanes_gather3(vb, bodies->v, i->b);
+    brc_lanes_gather3(g->wa, bodies->w, i->a);
+    brc_lanes_gather3(g->wb, bodies->w, i->b);
+    sub(g->x, xb, g->xa);
+    sub(g->dv, vb, va);
+    slip_of_row(g, block->sim->dt);
+    g->path = relative_path(g, gather(bodies->reach, i->a),
+                            gather(bodies->reach, i->b) + block->rest, block->sim->dt);
+}
+
+/* Constants of the bonds of four rows, as poly_bond_of; zero stiffness where there is none. */
+struct bonds {
+    brc_lanes kn, kt, ktheta, length;
+    brc_mask intact;
+};
+
+BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_block *block,
+                                     const struct numbers *i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    const struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    const uint8_t status[BRC_LANES] = {c->status[i->row[0]], c->status[i->row[1]],
+                                       c->status[i->row[2]], c->status[i->row[3]]};
+    bonds->intact = brc_lanes_equal(status, BRC_INTACT);
+    brc_lanes area = gather(rows->area, i->row), length = gather(rows->length, i->row);
+    brc_lanes stiff = brc_lanes_where(bonds->intact, area / length);
+    brc_lanes arm = p->torsion_length > 0 ? brc_lanes_all(p->torsion_length) : length;
+    bonds->kn = p->bn * stiff;
+    bonds->kt = p->bt * stiff;
+    bonds->ktheta = brc_lanes_where(bonds->intact, p->bm * area * arm);
+    bonds->length = length;
+}
+
+/* Four vectors of body frames in space; rotation matrices r, column of body vectors. */
+BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[3][3], double (*column)[3],
+                                    const int32_t row[BRC_LANES])
+{
+    brc_lanes v[3];
+    brc_lanes_gather3(v, column, row);
+    set(out, brc_lanes_dot(r[0], v), brc_lanes_dot(r[1], v), brc_lanes_dot(r[2], v));
+}
+
+BRC_LANES_INLINE void gather_turn(brc_lanes r[3][3], double (*turn)[3][3],
+                                  const int32_t i[BRC_LANES])
+{
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+            r[k][l] =
+                (brc_lanes){turn[i[0]][k][l], turn[i[1]][k][l], turn[i[2]][k][l], turn[i[3]][k][l]};
+}
+
+/* poly_twist for four bonds. */
+BRC_LANES_INLINE brc_lanes twist(const brc_lanes n[3], const brc_lanes ta[3], const brc_lanes tb[3],
+                                 brc_mask intact)
+{
+    brc_lanes c[3];
+    brc_lanes_cross(c, ta, tb);
+    brc_lanes x = brc_lanes_dot(ta, tb) - brc_lanes_dot(ta, n) * brc_lanes_dot(tb, n);
+    brc_lanes y = brc_lanes_where(intact, brc_lanes_dot(c, n));
+    x = brc_lanes_pick(intact, x, brc_lanes_all(1));
+    brc_lanes t = y / x, angle = t * (1 - t * t * (1.0 / 3 - t * t / 5));
+    brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(1e-3));
+    if (brc_lanes_any(~small))
+        for (int k = 0; k < BRC_LANES; k++)
+            angle[k] = small[k] ? angle[k] : atan2(y[k], x[k]);
+    return angle;
+}
+
+/* poly_bond_law of four bonds into the group: wrench, stiffness, breaking. */
+BRC_LANES_INLINE void bond_law(struct poly_row_group *g, const struct bonds *bond,
+                               const struct poly_params *p, const brc_lanes pa[3],
+                               const brc_lanes pb[3], const brc_lanes n[3], brc_lanes twisted)
+{
+    brc_lanes arm[3], back[3], u[3], ut[3], c[3];
+    sub(u, pb, pa);
+    brc_lanes un = brc_lanes_dot(u, n);
+    set(ut, u[0] - un * n[0], u[1] - un * n[1], u[2] - un * n[2]);
+    brc_lanes open = brc_lanes_max(un, brc_lanes_all(0)); /* eq:gt12:12 */
+    for (int k = 0; k < 3; k++) {
+        g->bond.f[k] = -bond->kn * open * n[k]; /* eq:gt12:11 */
+        g->bond.f[k] -= bond->kt * ut[k];       /* eq:gt12:13 */
+        arm[k] = 0.5 * (pa[k] + pb[k]);
+    }
+    brc_lanes limit = bond->length * p->eps_th;
+    brc_lanes slip = brc_lanes_sqrt(brc_lanes_dot(ut, ut));
+    g->broken = open / limit + slip / limit;    /* eq:gt12:15 */
+    brc_lanes moment = -bond->ktheta * twisted; /* eq:gt12:14 */
+    if (p->theta_limit)
+        g->broken += brc_lanes_abs(twisted) / p->theta_th;
+    sub(back, arm, g->x);
+    brc_lanes_cross(c, arm, g->bond.f);
+    scale(g->bond.m, n, moment);
+    add(g->bond.m, g->bond.m, c);
+    brc_lanes stiff = brc_lanes_max(bond->kn, bond->kt);
+    g->k[0] = stiff;
+    g->k[1] = stiff * brc_lanes_dot(arm, arm) + bond->ktheta;
+    g->k[2] = stiff * brc_lanes_dot(back, back) + bond->ktheta;
+}
+
+BRC_LANES_INLINE void bond_of_group(struct poly_block *block, struct poly_row_group *g,
+                                    const struct numbers *i, const bool torsion)
+{
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    brc_lanes ra[3][3], rb[3][3], pa[3], pb[3], na[3], nb[3], ta[3], tb[3], n[3];
+    struct bonds bonds;
+    bonds_of_group(&bonds, block, i);
+    gather_turn(ra, block->st->turn, i->a);
+    gather_turn(rb, block->st->turn, i->b);
+    /* material points relative to the centre of a */
+    body_to_space(pa, ra, rows->ca, i->row);
+    body_to_space(pb, rb, rows->cb, i->row);
+    add(pb, pb, g->x);
+    body_to_space(na, ra, rows->na, i->row);
+    body_to_space(nb, rb, rows->nb, i->row);
+    sub(n, na, nb);
+    scale(n, n, 1 / brc_lanes_sqrt(brc_lanes_dot(n, n)));
+    mask(n, bonds.intact, n);
+    brc_lanes twisted = brc_lanes_all(0);
+    if (torsion) {
+        body_to_space(ta, ra, rows->ta, i->row);
+        body_to_space(tb, rb, rows->tb, i->row);
+        twisted = twist(n, ta, tb, bonds.intact);
+    } else {
+        bonds.ktheta = brc_lanes_all(0);
+    }
+    bond_law(g, &bonds, poly_params_of(block->sim), pa, pb, n, twisted);
+    g->broken = brc_lanes_where(bonds.intact, g->broken);
+}
+
+BRC_LANES_INLINE void viscosities(struct poly_block *block, struct poly_row_group *g,
+                                  const struct numbers *i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    brc_lanes ma = gather(block->sim->bodies.true_mass, i->a);
+    brc_lanes mb = gather(block->sim->bodies.true_mass, i->b);
+    brc_lanes effective = ma * mb / (ma + mb);
+    g->gn = p->gn * effective;
+    g->gt = p->gt * effective;
+}
+
+/* What rows have used of their room; calm rows have nothing to decide in this step. */
+BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_group *g,
+                                     int32_t group)
+{
+    const struct brc_bodies *bodies = &block->sim->bodies;
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    for (int32_t k = 0, i = BRC_LANES * group; k < BRC_LANES && i < block->n_rows; k++, i++) {
+        size_t row = (size_t)block->row[i];
+        double travel = bodies->travel[block->a[i]], wake = rows->wake[row];
+        g->gap[k] = wake - travel - bodies->travel[block->b[i]];
+        if (block->listed[i]) {
+            rows->room[row] -= g->path[k];
+            block->calm[i] = rows->ready[row] && rows->room[row] > rows->calm[row];
+        } else {
+            block->calm[i] = travel + bodies->travel[block->b[i]] < wake;
+        }
+        block->calm[i] &= !(g->broken[k] > 1);
+    }
+}
+
+BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion)
+{
+    const struct brc_contacts *c = &block->sim->pairs;
+    clear((brc_lanes *)block->sum, sizeof block->sum);
+    for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++) {
+        struct poly_row_group *g = &block->group[group];
+        struct numbers i;
+        bool has_bond = false;
+        numbers_of(&i, block, group);
+        motion_of_group(block, g, &i);
+        viscosities(block, g, &i);
+        for (int k = 0; k < BRC_LANES; k++)
+            has_bond |= c->status[i.row[k]] == BRC_INTACT;
+        g->k[0] = g->k[1] = g->k[2] = g->broken = brc_lanes_all(0);
+        clear((brc_lanes *)&g->bond, sizeof g->bond);
+        if (has_bond)
+            bond_of_group(block, g, &i, torsion);
+        rooms_of_group(block, g, group);
+    }
+}
+
+#endif
