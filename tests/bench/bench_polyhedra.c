@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Time of a whole step of polyhedra: the 1000 bonded Voronoi cells of cases/gt12_block.yaml at half
  * of their peak load by each rule, the same cells unbonded in isotropic compression, the 512
- * dodecahedra, and a step in which many bonds break against the steps before it. */
+ * dodecahedra, a step in which many bonds break against the steps before it, and the part of a run
+ * that goes into lists. */
 #include "bench.h"
 
+#include "common/grid.h"
 #include "polyhedra/poly.h"
 #include "tests/dodecahedra.h"
 #include "tests/fixture.h"
@@ -12,7 +14,10 @@
 
 extern const struct brc_model brc_model_polyhedra;
 
-enum { REPEATS = 60 };
+enum { REPEATS = 60, SETTLED = 30, PEAK_STEPS = 400 };
+
+static const char *const strong_bonds[][2] = {{NULL, NULL}}, *const weak_bonds[][2] = {
+                                                                 {"eps_th", "0.001"}, {NULL, NULL}};
 
 static void count(void *user, const struct poly_active *active)
 {
@@ -109,30 +114,115 @@ static void unbonded(struct brc_context *ctx, const struct brc_specimen *specime
     brc_sim_free(&sim);
 }
 
-/* The largest avalanche of a compression with weaker bonds, against the steps without a break. */
+/* Steps in an avalanche of a compression with weaker bonds, against the steps before it, in which
+ * as many springs act. */
 static void breaking(struct brc_context *ctx, const struct brc_specimen *specimen)
 {
-    const char *const settings[][2] = {{"eps_th", "0.001"}, {NULL, NULL}};
     struct brc_sim sim;
     struct bench_times calm = {.n = 0}, avalanche = {.n = 0};
-    make(ctx, &sim, specimen, settings, "compression", "1e-5 1/s");
-    for (int i = 0; i < 1500 && avalanche.n < 20; i++) {
+    make(ctx, &sim, specimen, weak_bonds, "compression", "1.5e-5 1/s");
+    for (int i = 0; i < PEAK_STEPS && avalanche.n < 30; i++) {
         size_t before = sim.events.table.n;
         double time = step_seconds(&sim);
         size_t n = sim.events.table.n - before;
         if (n >= 50)
             bench_note(&avalanche, time);
-        else if (n < 5)
+        else if (i >= SETTLED && n < 5 && avalanche.n == 0)
             bench_note(&calm, time);
     }
-    printf("polyhedra_break: %d steps of 50 breaks or more, %zu breaks\n", avalanche.n,
-           sim.events.table.n);
-    struct bench_value v = {.name = "polyhedra_break_step_ratio",
-                            .value = bench_quantile(&avalanche, 0.5) / bench_quantile(&calm, 0.5),
-                            .unit = "1",
-                            .bar = 1.3};
+    double quiet = bench_quantile(&calm, 0.5), loud = bench_quantile(&avalanche, 0.5);
+    printf("polyhedra_break: %d steps of 50 breaks or more, %.4g ms, after %d calm ones, %.4g ms\n",
+           avalanche.n, 1e3 * loud, calm.n, 1e3 * quiet);
+    struct bench_value v = {
+        .name = "polyhedra_break_step_ratio",
+        .value = loud / quiet,
+        .unit = "1",
+        .bar = 1.3,
+        .spread = (bench_quantile(&avalanche, 0.75) - bench_quantile(&avalanche, 0.25)) / quiet};
     if (avalanche.n > 0)
         bench_report(&v);
+    brc_sim_free(&sim);
+}
+
+/* --- list work -------------------------------------------------------------------------------- */
+
+/* Rows before a step, and when each would be listed anew. */
+struct old_rows {
+    int32_t (*pair)[2];
+    double *wake;
+    size_t n;
+};
+
+static void remember(struct old_rows *old, const struct brc_sim *sim)
+{
+    const struct brc_contacts *c = &sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    free(old->pair);
+    free(old->wake);
+    *old =
+        (struct old_rows){malloc(c->n * sizeof *old->pair), malloc(c->n * sizeof *old->wake), c->n};
+    for (size_t i = 0; i < c->n; i++) {
+        old->pair[i][0] = c->a[i];
+        old->pair[i][1] = c->b[i];
+        old->wake[i] = rows->wake[i];
+    }
+}
+
+/* Makes the lists of the step that has been made once more; returns how long that takes. */
+static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool candidates)
+{
+    const struct brc_contacts *c = &sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
+    struct brc_candidates grains = {0}, platens = {0};
+    size_t *listed = malloc(c->n * sizeof *listed), n = 0;
+    for (size_t i = 0, k = 0; i < c->n; i++) {
+        while (k < old->n && (old->pair[k][0] < c->a[i] ||
+                              (old->pair[k][0] == c->a[i] && old->pair[k][1] < c->b[i])))
+            k++;
+        bool same = k < old->n && old->pair[k][0] == c->a[i] && old->pair[k][1] == c->b[i];
+        if (!same || old->wake[k] != rows->wake[i])
+            listed[n++] = i;
+    }
+    double begin = cpu_seconds();
+    for (size_t i = 0; i < n; i++)
+        must(sim->ctx, poly_list_row(sim, sim->state, listed[i]));
+    if (candidates) {
+        const struct brc_bodies *b = &sim->bodies;
+        must(sim->ctx, brc_grid_pairs(sim->ctx, (const double(*)[3])b->x, b->reach, b->n_grains,
+                                      sim->skin, &grains));
+        must(sim->ctx, brc_grid_platens(sim->ctx, sim, &platens));
+        must(sim->ctx, sim->model.pairs(sim, sim->state, &grains, &platens));
+    }
+    double time = cpu_seconds() - begin;
+    brc_candidates_free(&grains);
+    brc_candidates_free(&platens);
+    free(listed);
+    return time;
+}
+
+/* The part of a run that goes into lists of grain pairs and of their features, once they are made
+ * for the first time. */
+static void listing(struct brc_context *ctx, const struct brc_specimen *specimen,
+                    const char *const settings[][2], const char *rate, const char *name)
+{
+    struct brc_sim sim;
+    struct old_rows old = {0};
+    double steps = 0, lists = 0;
+    make(ctx, &sim, specimen, settings, "compression", rate);
+    for (int i = 0; i < PEAK_STEPS; i++) {
+        int64_t listings = sim.n_listings;
+        remember(&old, &sim);
+        double time = step_seconds(&sim);
+        if (i < SETTLED)
+            continue;
+        steps += time;
+        lists += list_seconds(&sim, &old, sim.n_listings > listings);
+    }
+    struct bench_value v = {.name = name, .value = lists / steps, .unit = "1", .bar = 0.05};
+    bench_report(&v);
+    printf("%s: %zu breaks in %d steps\n", name, sim.events.table.n, PEAK_STEPS);
+    free(old.pair);
+    free(old.wake);
     brc_sim_free(&sim);
 }
 
@@ -181,6 +271,8 @@ int main(void)
     bonded(&ctx, &specimen, "closed", "polyhedra_bonded_closed_1000_ms_step", 0);
     unbonded(&ctx, &specimen);
     breaking(&ctx, &specimen);
+    listing(&ctx, &specimen, strong_bonds, "1e-5 1/s", "polyhedra_list_share_calm");
+    listing(&ctx, &specimen, weak_bonds, "1.5e-5 1/s", "polyhedra_list_share");
     dodecahedra();
     brc_specimen_free(&specimen);
     return 0;
