@@ -232,13 +232,13 @@ static void copy_point(const struct poly_points *points, size_t to, size_t from)
     points->active[to] = points->active[from];
     points->i[to] = points->i[from];
     points->j[to] = points->j[from];
-    memmove(points->near[to], points->near[from], sizeof points->near[from]);
-    memmove(points->item[to], points->item[from], sizeof points->item[from]);
+    memcpy(points->near[to], points->near[from], sizeof points->near[from]);
+    memcpy(points->item[to], points->item[from], sizeof points->item[from]);
     points->sleep[to] = points->sleep[from];
     points->hold[to] = points->hold[from];
     points->weight[to] = points->weight[from];
-    memmove(points->n[to], points->n[from], sizeof points->n[from]);
-    memmove(points->xi[to], points->xi[from], sizeof points->xi[from]);
+    memcpy(points->n[to], points->n[from], sizeof points->n[from]);
+    memcpy(points->xi[to], points->xi[from], sizeof points->xi[from]);
 }
 
 /* Moves the state of points that act to the front, in order; returns how many. */
@@ -248,7 +248,8 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
     for (size_t p = first; p < first + n; p++) {
         if (points->weight[p] <= 0)
             continue;
-        copy_point(points, kept, p);
+        if (kept < p)
+            copy_point(points, kept, p);
         points->hold[kept++] = HUGE_VAL;
     }
     return kept - first;
