@@ -13,8 +13,8 @@
 #include <string.h>
 
 enum {
-    POLY_ROWS = 32,         /* of a block */
-    POLY_SLOTS = 512,       /* touches at a time; a row begins at a multiple of BRC_LANES */
+    POLY_ROWS = 64,         /* of a block */
+    POLY_SLOTS = 1024,      /* touches at a time; a row begins at a multiple of BRC_LANES */
     POLY_SPARE = POLY_SLOTS /* slots that nobody reads */
 };
 

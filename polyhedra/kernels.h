@@ -66,10 +66,8 @@ BRC_LANES_INLINE void slide_spring(brc_lanes xi[3], const brc_lanes n[3], const 
     add(xi, xi, du); /* eq:gt12:9 */
     axpy(xi, -brc_lanes_dot(xi, n), n);
     brc_lanes xi2 = brc_lanes_dot(xi, xi);
-    brc_mask slips = brc_lanes_less(limit * limit, xi2);
-    if (!brc_lanes_any(slips))
-        return;
-    brc_lanes cap = brc_lanes_pick(slips, limit / brc_lanes_sqrt(xi2), brc_lanes_all(1));
+    brc_lanes cap = brc_lanes_pick(brc_lanes_less(limit * limit, xi2), limit / brc_lanes_sqrt(xi2),
+                                   brc_lanes_all(1));
     scale(xi, xi, cap); /* eq:gt12:8 */
 }
 
