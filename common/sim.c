@@ -29,6 +29,9 @@ const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scal
 enum { TIDY_STEPS = 100 };
 /* growth of the largest sum k / m that calls for a new estimate */
 static const double LIMIT_GROWTH = 1.05;
+/* growth of all masses that calls for another look at the eigenfrequencies of small ones: masses
+ * grow where contacts are new or stiffer, and where bonds break the frequencies only fall */
+static const double MASS_GROWTH = 1.01;
 /* factor on the scaled masses that needs no look at the eigenfrequencies, and the part of the limit
  * that a step may be with a smaller one */
 static const double SAFE_MASS_MARGIN = 1.2, MASS_LIMIT = 0.9;
@@ -131,10 +134,15 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
  * are held against the largest eigenfrequency of the present one. */
 static int update_masses(struct brc_sim *sim, bool is_listed)
 {
-    double margin = sim->run.mass_margin;
+    double margin = sim->run.mass_margin, mass = 0;
     brc_integrate_scale_masses(sim);
     if (margin >= SAFE_MASS_MARGIN || !is_listed)
         return 0;
+    for (size_t i = 0; i < sim->bodies.n_grains; i++)
+        mass += sim->bodies.mass[i];
+    if (mass <= MASS_GROWTH * sim->mass_checked)
+        return 0;
+    sim->mass_checked = mass;
     BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
     double least = margin / (MASS_LIMIT * MASS_LIMIT * sim->dt_limit * sim->dt_limit);
     if (least > margin)

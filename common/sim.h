@@ -97,6 +97,7 @@ struct brc_sim {
     BRC_SIM_SCALARS(BRC_SCALAR_MEMBER)
     double skin;          /* m */
     double damping_alpha; /* local damping in use: 0 in the dynamic regime */
+    double mass_checked;  /* kg, sum of the masses at the last look at the eigenfrequencies */
     int64_t k_seen[2];    /* k_version of pairs and platens when dt or masses were last set */
 };
 

@@ -166,7 +166,7 @@ static double strength(struct brc_context *ctx, const struct brc_specimen *speci
 static void time_compression(struct brc_context *ctx, const struct brc_specimen *specimen)
 {
     const char *const run[] = {"local_damping", "0.2", "mass_margin", "0.45", NULL};
-    const char *const test[] = {"target", "0.008", "rate", "1e-6 1/s", NULL};
+    const char *const test[] = {"target", "0.008", NULL};
     const char *const slow_run[] = {NULL};
     const char *const slow[] = {"loading", "fixed", "rate", "2e-7 1/s", "stop_drop", "0.8", NULL};
     double seconds, steps, reference = REFERENCE;
