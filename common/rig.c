@@ -22,9 +22,9 @@ static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_
  * the rate follows it. */
 static const double CRUISE_RISE = 0.01, CRUISE_FALL = 0.002, RATE_GAIN = 0.05;
 /* seconds (steps) to strain_max at the automatic rate */
-static const double FIRST_STEPS = 4e4;
-static const double SLOWEST = 0.04; /* automatic smallest rate over the first one */
-enum { UNBALANCED_STEPS = 10 };     /* steps between two measures of the unbalanced force */
+static const double FIRST_STEPS = 1e5;
+static const double SLOWEST = 0.1; /* automatic smallest rate over the first one */
+enum { UNBALANCED_STEPS = 10 };    /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
 {
@@ -131,20 +131,18 @@ static double unbalanced_ratio(const struct brc_sim *sim)
 }
 
 /* Adaptive loading. The cruising rate drifts to where the unbalanced force is at its target; a
- * burst of breaks brakes the rate in proportion, and lets go of it as the burst dies away. Before
- * the first break the ratio is large because there is hardly any load, so the first rate is kept.
- */
+ * burst of breaks brakes the rate in proportion, and lets go of it as the burst dies away. */
 static void adapt_rate(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
     const struct brc_test_params *t = &rig->params;
     double excess = log(fmax(rig->unbalanced / t->target, DBL_MIN));
     double gain = (excess > 0 ? CRUISE_FALL : CRUISE_RISE) * UNBALANCED_STEPS;
-    double least = sim->events.table.n > 0 ? t->rate_min : fmax(t->rate, t->rate_min);
-    rig->cruise = fmin(fmax(rig->cruise * exp(-gain * clip(excess, 1)), least), t->rate_max);
+    double cruise = rig->cruise * exp(-gain * clip(excess, 1));
+    rig->cruise = fmin(fmax(cruise, t->rate_min), t->rate_max);
     double change = log(rig->cruise / rig->rate) - fmax(excess, 0);
     double rate = rig->rate * exp(clip(change, RATE_GAIN * UNBALANCED_STEPS));
-    rig->rate = fmin(fmax(rate, least), t->rate_max);
+    rig->rate = fmin(fmax(rate, t->rate_min), t->rate_max);
 }
 
 /* Least-squares slope of the displacement along k against the place along k, over the gauge grains;

@@ -16,12 +16,11 @@ enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                \
            "adaptive: the rate follows the unbalanced force; fixed: at rate")                    \
     REAL(rate, "1/s", "0 1/s", "[0, inf)",                                                       \
-         "fixed loading: strain rate; adaptive: the first one; 0: strain_max / 4e4 a second; "   \
+         "fixed loading: strain rate; adaptive: the first one; 0: strain_max / 1e5 a second; "   \
          "in the quasi-static regime one step is one second")                                    \
     REAL(target, "1", "0.003", "(0, 1)", "adaptive: unbalanced-force ratio to hold")             \
     REAL(rate_min, "1/s", "0 1/s", "[0, inf)",                                                   \
-         "adaptive: smallest strain rate once something has broken; 0: a fiftieth of the first " \
-         "one")                                                                                  \
+         "adaptive: smallest strain rate; 0: a tenth of the first one")                          \
     REAL(rate_max, "1/s", "1e-5 1/s", "(0, inf)", "adaptive: largest strain rate")               \
     REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain")              \
     REAL(stop_drop, "1", "0.5", "[0, 1)",                                                        \
