@@ -23,6 +23,8 @@
     VECTOR(double, true_inertia, 3, BRC_STATE, "kg m2", "principal moments from the density")   \
     SCALAR(double, volume, BRC_STATE, "m3", "volume")                                           \
     SCALAR(double, reach, BRC_STATE, "m", "radius of the bounding sphere about the centre")     \
+    VECTOR(double, v_mean, 3, BRC_STATE, "m s-1", "mean velocity of the last steps")            \
+    VECTOR(double, w_mean, 3, BRC_STATE, "rad s-1", "mean angular velocity of the last steps")  \
     VECTOR(double, x0, 3, BRC_STATE, "m", "centre of mass at the start")                        \
     VECTOR(double, q0, 4, BRC_STATE, "1", "orientation at the start")
 

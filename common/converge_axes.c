@@ -213,7 +213,7 @@ static void put_target(struct brc_converge_setting *s, const struct brc_test_par
     add_line(s, "test.loading=adaptive");
     add_line(s, "test.target=%.9g", factor * t->target);
     /* below the target of the case the smallest rate must not hold the rate up */
-    if (factor < 1)
+    if (factor < 1 && t->rate_min > 0)
         add_line(s, "test.rate_min=%.9g 1/s", factor * t->rate_min);
     label(s, "target", factor * t->target);
 }

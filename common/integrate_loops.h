@@ -70,16 +70,43 @@ BRC_LANES_INLINE void add_damping(const struct brc_sim *sim, brc_mask live, doub
     sums->damping_ahead -= brc_lanes_where(live, 0.5 * dt * brc_lanes_dot(p->d, p->now));
 }
 
+/* What local damping acts against: the motion, or what it differs from its mean by. */
+BRC_LANES_INLINE void damped_motion(const struct brc_sim *sim, brc_lanes v[3],
+                                    const brc_lanes old[3], double (*mean)[3])
+{
+    brc_lanes spared[3];
+    brc_lanes_at3(spared, mean);
+    bool is_spared = sim->spares_mean && sim->rig.is_settled;
+    for (int k = 0; k < 3; k++)
+        v[k] = is_spared ? old[k] - spared[k] : old[k];
+}
+
 /* What pushes bodies i to i + 3: v or w before, force or moment, damping. */
 BRC_LANES_INLINE void push_of(const struct brc_sim *sim, double (*v)[3], double (*f)[3],
-                              struct push *p)
+                              double (*mean)[3], struct push *p)
 {
+    brc_lanes damped[3];
     brc_lanes_at3(p->old, v);
     brc_lanes_at3(p->f, f);
     for (int k = 0; k < 3; k++)
         p->d[k] = brc_lanes_all(0);
-    if (BRC_OPTION(sim->damping_alpha > 0))
-        local_damping(sim, p->d, p->f, p->old); /* eq:vgcm:4 */
+    if (BRC_OPTION(sim->damping_alpha > 0)) {
+        damped_motion(sim, damped, p->old, mean);
+        local_damping(sim, p->d, p->f, damped); /* eq:vgcm:4 */
+    }
+}
+
+/* Exponential mean over the memory of the damping. */
+BRC_LANES_INLINE void follow_mean(const struct brc_sim *sim, brc_mask live, double (*mean)[3],
+                                  const struct push *p)
+{
+    brc_lanes at[3];
+    if (!BRC_OPTION(sim->has_mean))
+        return;
+    brc_lanes_at3(at, mean);
+    for (int k = 0; k < 3; k++)
+        at[k] += brc_lanes_where(live, (p->now[k] - at[k]) / sim->run.damping_memory);
+    brc_lanes_put3(mean, at);
 }
 
 BRC_LANES_INLINE void put_where(brc_mask live, double (*v)[3], const struct push *p)
@@ -97,10 +124,11 @@ BRC_LANES_INLINE void kick_translation(const struct brc_sim *sim, size_t i, brc_
     const struct brc_bodies *b = &sim->bodies;
     struct push p;
     brc_lanes mass = brc_lanes_at(b->mass + i);
-    push_of(sim, b->v + i, b->f + i, &p);
+    push_of(sim, b->v + i, b->f + i, b->v_mean + i, &p);
     for (int k = 0; k < 3; k++)
         p.now[k] = p.old[k] + dt * (p.f[k] + p.d[k]) / mass; /* eq:vgcm:1 */
     put_where(live, b->v + i, &p);
+    follow_mean(sim, live, b->v_mean + i, &p);
     sums->kinetic += brc_lanes_where(live, 0.5 * mass * brc_lanes_dot(p.old, p.now));
     add_damping(sim, live, dt, &p, sums);
 }
@@ -131,7 +159,7 @@ BRC_LANES_INLINE void kick_rotation(const struct brc_sim *sim, size_t i, brc_mas
     struct push p;
     brc_lanes inertia[3];
     brc_lanes_at3(inertia, b->inertia + i);
-    push_of(sim, b->w + i, b->t + i, &p);
+    push_of(sim, b->w + i, b->t + i, b->w_mean + i, &p);
     brc_mask unequal =
         live & (brc_lanes_less(inertia[0], inertia[1]) | brc_lanes_less(inertia[1], inertia[0]) |
                 brc_lanes_less(inertia[1], inertia[2]) | brc_lanes_less(inertia[2], inertia[1]));
@@ -142,6 +170,7 @@ BRC_LANES_INLINE void kick_rotation(const struct brc_sim *sim, size_t i, brc_mas
     sums->kinetic += brc_lanes_where(equal, 0.5 * inertia[0] * brc_lanes_dot(p.old, p.now));
     if (brc_lanes_any(unequal))
         spin_up(b, i, unequal, dt, &p, sums);
+    follow_mean(sim, live, b->w_mean + i, &p);
     add_damping(sim, live, dt, &p, sums);
 }
 

@@ -10,17 +10,18 @@
 #include "brc.h"
 
 /* name, sign in the balance (+1 taken up by the sample, -1 put into it), meaning */
-#define BRC_LEDGER_TERMS(X)                                                \
-    X(kinetic, 1, "kinetic energy now")                                    \
-    X(bond, 1, "work stored in bonds")                                     \
-    X(contact_normal, 1, "work stored in normal contact springs")          \
-    X(contact_shear, 1, "work stored in tangential contact springs")       \
-    X(friction, 1, "dissipated by friction")                               \
-    X(damage, 1, "dissipated by damage and broken bonds")                  \
-    X(viscous, 1, "dissipated by viscous contact forces")                  \
-    X(local_damping, 1, "dissipated by local damping")                     \
-    X(mass_scaling, 1, "kinetic energy removed when scaled masses change") \
-    X(boundary, -1, "work of the platens")                                 \
+#define BRC_LEDGER_TERMS(X)                                                   \
+    X(kinetic, 1, "kinetic energy now")                                       \
+    X(bond, 1, "work stored in bonds")                                        \
+    X(contact_normal, 1, "work stored in normal contact springs")             \
+    X(contact_shear, 1, "work stored in tangential contact springs")          \
+    X(friction, 1, "dissipated by friction")                                  \
+    X(damage, 1, "dissipated by damage and broken bonds")                     \
+    X(viscous, 1, "dissipated by viscous contact forces")                     \
+    X(local_damping, 1, "dissipated by local damping")                        \
+    X(mass_scaling, 1, "kinetic energy removed when scaled masses change")    \
+    X(rate_change, 1, "kinetic energy removed when the loading rate changes") \
+    X(boundary, -1, "work of the platens")                                    \
     X(gravity, -1, "work of gravity")
 
 struct brc_ledger {

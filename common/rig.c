@@ -18,13 +18,19 @@ const struct brc_param_list brc_test_param_list = BRC_PARAMS(test_params, struct
 static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
-/* Adaptive loading: part by which the cruising rate rises and falls a step at most, and by which
- * the rate follows it. */
-static const double CRUISE_RISE = 0.01, CRUISE_FALL = 0.002, RATE_GAIN = 0.05;
-/* seconds (steps) to strain_max at the automatic rate */
+/* Adaptive loading: the rate follows log(target / unbalanced) by this gain a step, and rises and
+ * falls by these parts a step at most. */
+static const double RATE_GAIN = 0.05, RATE_RISE = 0.03, RATE_FALL = 0.05;
+/* Largest strain of a step over the strain so far; the automatic smallest one, over the target too;
+ * how much faster that is when the load has fallen to this part of its peak. */
+static const double FASTEST = 0.03, SLOWEST = 1.0 / 16, PAST_PEAK = 3, PEAK_PASSED = 0.9;
+/* The start is settled when the unbalanced force is below its target and this, or after so many
+ * steps. */
+static const double SETTLED = 0.01;
+enum { LEAST_START = 20, LONGEST_START = 500 };
+/* seconds (steps) to strain_max at the automatic first rate */
 static const double FIRST_STEPS = 1e5;
-static const double SLOWEST = 0.1; /* automatic smallest rate over the first one */
-enum { UNBALANCED_STEPS = 10 };    /* steps between two measures of the unbalanced force */
+enum { UNBALANCED_STEPS = 5 }; /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
 {
@@ -74,8 +80,6 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     rig->params = *test;
     if (test->rate == 0)
         rig->params.rate = test->strain_max / FIRST_STEPS;
-    if (test->rate_min == 0)
-        rig->params.rate_min = SLOWEST * rig->params.rate;
     rig->n_platens = brc_rig_platens(test);
     rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
     rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;
@@ -93,12 +97,14 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     }
     if (rig->n_platens == 0)
         return 0;
-    rig->rate = rig->cruise = rig->params.rate;
+    rig->rate = rig->params.rate;
     set_platen_velocities(sim);
     double middle = 0.5 * (low[rig->axis] + high[rig->axis]);
-    for (size_t i = 0; i < sim->bodies.n_grains; i++)
+    for (size_t i = 0; i < sim->bodies.n_grains; i++) {
         sim->bodies.v[i][rig->axis] =
             -rig->sense * rig->rate * (sim->bodies.x[i][rig->axis] - middle);
+        brc_copy(sim->bodies.v_mean[i], sim->bodies.v[i]);
+    }
     return 0;
 }
 
@@ -130,19 +136,65 @@ static double unbalanced_ratio(const struct brc_sim *sim)
     return unbalanced / (double)b->n_grains / (contact / (double)active);
 }
 
-/* Adaptive loading. The cruising rate drifts to where the unbalanced force is at its target; a
- * burst of breaks brakes the rate in proportion, and lets go of it as the burst dies away. */
-static void adapt_rate(struct brc_sim *sim)
+/* The start is over when the field of velocities is that of steady loading. */
+static bool is_settled(const struct brc_sim *sim)
+{
+    double calm = fmin(SETTLED, sim->rig.params.target);
+    bool is_calm = sim->step >= LEAST_START && sim->rig.unbalanced < calm;
+    return is_calm || sim->step >= LONGEST_START || sim->events.table.n > 0;
+}
+
+static double smallest_rate(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    bool is_past = rig->force < PEAK_PASSED * rig->force_peak;
+    if (rig->params.rate_min > 0)
+        return rig->params.rate_min;
+    return (is_past ? PAST_PEAK : 1) * SLOWEST * rig->params.target * rig->strain / sim->dt;
+}
+
+/* Adaptive loading: the rate drifts to where the unbalanced force is at its target. */
+static void choose_change(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
-    const struct brc_test_params *t = &rig->params;
-    double excess = log(fmax(rig->unbalanced / t->target, DBL_MIN));
-    double gain = (excess > 0 ? CRUISE_FALL : CRUISE_RISE) * UNBALANCED_STEPS;
-    double cruise = rig->cruise * exp(-gain * clip(excess, 1));
-    rig->cruise = fmin(fmax(cruise, t->rate_min), t->rate_max);
-    double change = log(rig->cruise / rig->rate) - fmax(excess, 0);
-    double rate = rig->rate * exp(clip(change, RATE_GAIN * UNBALANCED_STEPS));
-    rig->rate = fmin(fmax(rate, t->rate_min), t->rate_max);
+    double room = log(rig->params.target / fmax(rig->unbalanced, DBL_MIN));
+    double rate = rig->rate * exp(UNBALANCED_STEPS * fmin(RATE_GAIN * room, RATE_RISE));
+    rate = fmin(fmax(rate, smallest_rate(sim)), FASTEST * rig->strain / sim->dt);
+    rate = fmin(fmax(rate, rig->params.rate_min), rig->params.rate_max);
+    rig->change = clip(log(rate / rig->rate) / UNBALANCED_STEPS, RATE_FALL);
+}
+
+/* In slow loading all velocities are in proportion to the rate: when their mean goes along with a
+ * change of rate, it makes no wave. Between the forces and the kick of a step. */
+static void change_velocities(struct brc_sim *sim, double part)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        double dv[3], dw[3], v[3], w[3]; /* v, w: means of before and after */
+        brc_scale(dv, b->v_mean[i], part);
+        brc_scale(dw, b->w_mean[i], part);
+        brc_scale(v, dv, 0.5);
+        brc_scale(w, dw, 0.5);
+        brc_add(v, v, b->v[i]);
+        brc_add(w, w, b->w[i]);
+        /* what leaves the kinetic energy of the leapfrog form, see ledger.h */
+        sim->ledger.rate_change -= b->mass[i] * brc_dot(dv, v) + b->inertia[i][0] * brc_dot(dw, w) +
+                                   0.5 * sim->dt * (brc_dot(dv, b->f[i]) + brc_dot(dw, b->t[i]));
+        brc_add(b->v[i], b->v[i], dv);
+        brc_add(b->w[i], b->w[i], dw);
+        brc_axpy(b->v_mean[i], part, b->v_mean[i]);
+        brc_axpy(b->w_mean[i], part, b->w_mean[i]);
+    }
+}
+
+static void change_rate(struct brc_sim *sim)
+{
+    double factor = exp(sim->rig.change);
+    if (sim->rig.change == 0)
+        return;
+    if (sim->has_mean)
+        change_velocities(sim, factor - 1);
+    sim->rig.rate *= factor;
 }
 
 /* Least-squares slope of the displacement along k against the place along k, over the gauge grains;
@@ -182,18 +234,21 @@ static int add_row(struct brc_sim *sim)
     double stored = l->bond + l->contact_normal + l->contact_shear;
     c->step[i] = sim->step;
     c->time[i] = sim->time;
-    c->strain[i] = rig->strain;
-    c->force[i] = rig->n_summed > 0 ? rig->force_sum / (double)rig->n_summed : 0;
+    /* over the same steps: a fast rate would set them apart */
+    double steps = (double)rig->n_summed, mean = rig->n_summed > 0 ? rig->strain_sum / steps : 0;
+    double part = rig->strain > 0 ? mean / rig->strain : 1;
+    c->strain[i] = mean;
+    c->force[i] = rig->n_summed > 0 ? rig->force_sum / steps : 0;
     c->stress[i] = c->force[i] / rig->section;
-    c->strain_axial[i] = rig->sense * gauge_strain(sim, rig->axis);
+    c->strain_axial[i] = part * rig->sense * gauge_strain(sim, rig->axis);
     c->strain_lateral[i] =
-        rig->sense * 0.5 * (gauge_strain(sim, across[0]) + gauge_strain(sim, across[1]));
+        part * rig->sense * 0.5 * (gauge_strain(sim, across[0]) + gauge_strain(sim, across[1]));
     c->rate[i] = rig->rate;
     c->unbalanced[i] = rig->unbalanced;
     c->kinetic_ratio[i] = stored > 0 ? l->kinetic / stored : 0;
     c->residual[i] = sim->run.ledger ? brc_ledger_residual(l) : 0;
     c->broken[i] = (int64_t)sim->events.table.n;
-    rig->force_sum = 0;
+    rig->force_sum = rig->strain_sum = 0;
     rig->n_summed = 0;
     if (c->force[i] > rig->force_peak) {
         rig->force_peak = c->force[i];
@@ -229,11 +284,14 @@ int brc_rig_step(struct brc_sim *sim)
         return 0;
     measure_platens(sim);
     rig->strain += rig->rate * sim->dt;
+    rig->strain_sum += rig->strain;
     if (sim->step % UNBALANCED_STEPS == 0) {
         rig->unbalanced = unbalanced_ratio(sim);
-        if (rig->params.loading == BRC_LOADING_ADAPTIVE)
-            adapt_rate(sim);
+        rig->is_settled = rig->is_settled || is_settled(sim);
+        if (rig->is_settled && rig->params.loading == BRC_LOADING_ADAPTIVE)
+            choose_change(sim);
     }
+    change_rate(sim);
     set_platen_velocities(sim);
     return 0;
 }

@@ -242,6 +242,16 @@ static int start(struct brc_sim *sim)
     return sim->ctx->code;
 }
 
+/* A change of rate moves the mean velocities, so adaptive loading needs them in any case. */
+static void choose_damped(struct brc_sim *sim, const struct brc_test_params *test)
+{
+    bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE && brc_rig_platens(test) > 0;
+    bool is_auto = sim->run.damped == BRC_DAMPED_AUTO;
+    sim->spares_mean = is_auto ? is_adaptive : sim->run.damped == BRC_DAMPED_FLUCTUATION;
+    sim->has_mean = sim->run.regime == BRC_QUASI_STATIC && (is_adaptive || sim->spares_mean);
+    sim->spares_mean &= sim->has_mean;
+}
+
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
                    const void *params, const struct brc_specimen *specimen,
                    const struct brc_test_params *test, const struct brc_run_params *run)
@@ -251,6 +261,7 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     sim->specimen = specimen;
     sim->run = *run;
     sim->damping_alpha = run->regime == BRC_QUASI_STATIC ? run->local_damping : 0;
+    choose_damped(sim, test);
     brc_events_init(&sim->events);
     BRC_TRY(brc_simd_check(ctx, run->simd));
     BRC_TRY(brc_model_complete(ctx, model, &sim->model));

@@ -14,28 +14,33 @@
 
 enum brc_regime { BRC_DYNAMIC, BRC_QUASI_STATIC };
 enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
+enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
 
-#define BRC_RUN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                               \
-    CHOICE(                                                                                      \
-        regime, "dynamic|quasi_static", "quasi_static",                                          \
-        "dynamic: true mass, viscous contact damping; quasi_static: scaled mass, step 1, local " \
-        "damping")                                                                               \
-    REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error") \
-    REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit")        \
-    REAL(mass_margin, "1", "1.2", "(0, 100]",                                                    \
-         "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "   \
-         "measured, and an unstable step is an error")                                           \
-    REAL(local_damping, "1", "0.7", "[0, 1)", "quasi_static: local non-viscous damping alpha")   \
-    CHOICE(damping, "cartesian|along_velocity", "cartesian",                                     \
-           "local damping per Cartesian component as printed, or along the velocity")            \
-    REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")            \
-    FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")               \
-    REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                   \
-    CHOICE(simd, "auto|base|avx2|avx512", "auto",                                                \
-           "instructions that hot loops use; the same bits with each of them")                   \
-    INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")          \
-    REAL(checkpoint, "s", "5 min", "[0, inf)",                                                   \
-         "elapsed time between saved states; 0: none by time")                                   \
+#define BRC_RUN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                \
+    CHOICE(                                                                                       \
+        regime, "dynamic|quasi_static", "quasi_static",                                           \
+        "dynamic: true mass, viscous contact damping; quasi_static: scaled mass, step 1, local "  \
+        "damping")                                                                                \
+    REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error")  \
+    REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit")         \
+    REAL(mass_margin, "1", "1.2", "(0, 100]",                                                     \
+         "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "    \
+         "measured, and an unstable step is an error")                                            \
+    REAL(local_damping, "1", "0.7", "[0, 1)", "quasi_static: local non-viscous damping alpha")    \
+    CHOICE(damping, "cartesian|along_velocity", "cartesian",                                      \
+           "local damping per Cartesian component as printed, or along the velocity")             \
+    CHOICE(damped, "auto|motion|fluctuation", "auto",                                             \
+           "local damping acts against the whole motion, as printed, or against its fluctuation " \
+           "about the mean of the last steps; auto: fluctuation under adaptive loading")          \
+    REAL(damping_memory, "1", "35", "[1, inf)", "steps that this mean reaches back")              \
+    REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")             \
+    FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")                \
+    REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                    \
+    CHOICE(simd, "auto|base|avx2|avx512", "auto",                                                 \
+           "instructions that hot loops use; the same bits with each of them")                    \
+    INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")           \
+    REAL(checkpoint, "s", "5 min", "[0, inf)",                                                    \
+         "elapsed time between saved states; 0: none by time")                                    \
     INT(checkpoint_steps, "0", "[0, 2000000000]", "steps between saved states; 0: none by steps")
 
 struct brc_run_params {
@@ -47,10 +52,12 @@ extern const struct brc_param_list brc_run_param_list;
  */
 #define BRC_RIG_SCALARS(X)                                                    \
     X(double, rate, "s-1", "strain rate")                                     \
-    X(double, cruise, "s-1", "adaptive: rate between bursts of breaks")       \
+    X(double, change, "1", "adaptive: change of log rate a step")             \
+    X(int64_t, is_settled, "1", "the start has been left behind")             \
     X(double, strain, "1", "platen strain, in the sense of the test")         \
     X(double, force, "N", "mean platen force now, in the sense of the test")  \
     X(double, force_sum, "N", "sum of force since the last row of the curve") \
+    X(double, strain_sum, "1", "sum of strain since the last row")            \
     X(int64_t, n_summed, "1", "steps in force_sum")                           \
     X(double, force_peak, "N", "largest row of the curve")                    \
     X(double, strain_peak, "1", "platen strain at the peak")                  \
@@ -97,6 +104,8 @@ struct brc_sim {
     BRC_SIM_SCALARS(BRC_SCALAR_MEMBER)
     double skin;          /* m */
     double damping_alpha; /* local damping in use: 0 in the dynamic regime */
+    bool has_mean;        /* the mean velocities are kept */
+    bool spares_mean;     /* once the start is settled, local damping leaves them alone */
     double mass_checked;  /* kg, sum of the masses at the last look at the eigenfrequencies */
     int64_t k_seen[2];    /* k_version of pairs and platens when dt or masses were last set */
 };
