@@ -29,26 +29,50 @@ BRC_LANES_INLINE void add_double_cross(brc_lanes r[3], brc_lanes s, const brc_la
     axpy(r, s, c);
 }
 
+/* What points want of a row. */
+struct frames {
+    brc_lanes xa[3], gn, x[3], gt;
+    /* b moves at slip + slope . arm relative to a, arm from a; turn is a quarter of the sum of both
+     * turns in the step */
+    brc_lanes slip[3], none;
+    struct {
+        brc_lanes slope[3], turn;
+    } along[3];
+};
+
 /* Velocity of b relative to a with arms at the middle of the step, so that a pair that turns as one
  * body does not slip but for the third order of the step's angle: for an arm r from a,
  * dv + (wb - h wb wb)(r - x) - (wa - h wa wa) r, with cross products for products and h = dt / 2.
  */
-BRC_LANES_INLINE void slip_of_row(struct poly_row_group *g, double dt)
+BRC_LANES_INLINE void slip_of_row(struct frames *f, const struct poly_row_group *g, double dt)
 {
     const brc_lanes *wa = g->wa, *wb = g->wb, h = brc_lanes_all(0.5 * dt);
     brc_lanes dw[3], c[3];
     brc_lanes_cross(c, wb, g->x);
-    sub(g->slip, g->dv, c);
-    add_double_cross(g->slip, h, wb, g->x);
+    sub(f->slip, g->dv, c);
+    add_double_cross(f->slip, h, wb, g->x);
     sub(dw, wb, wa);
     brc_lanes widen = h * (brc_lanes_dot(wb, wb) - brc_lanes_dot(wa, wa));
     for (int i = 0; i < 3; i++) {
+        brc_lanes *slope = f->along[i].slope;
         for (int j = 0; j < 3; j++)
-            g->slope[i][j] = -h * (wb[i] * wb[j] - wa[i] * wa[j]);
-        g->slope[i][i] += widen;
-        g->slope[i][(i + 1) % 3] -= dw[(i + 2) % 3];
-        g->slope[i][(i + 2) % 3] += dw[(i + 1) % 3];
-        g->turn[i] = brc_lanes_all(0.25 * dt) * (wa[i] + wb[i]);
+            slope[j] = -h * (wb[i] * wb[j] - wa[i] * wa[j]);
+        slope[i] += widen;
+        slope[(i + 1) % 3] -= dw[(i + 2) % 3];
+        slope[(i + 2) % 3] += dw[(i + 1) % 3];
+        f->along[i].turn = brc_lanes_all(0.25 * dt) * (wa[i] + wb[i]);
+    }
+}
+
+/* Lane i to the frame of row i. */
+BRC_LANES_INLINE void put_frames(double (*to)[POLY_FRAME], struct frames *f)
+{
+    brc_lanes *part = (brc_lanes *)f;
+    f->none = brc_lanes_all(0);
+    for (int k = 0; k < POLY_FRAME; k += BRC_LANES) {
+        brc_lanes_transpose(part + k);
+        for (int i = 0; i < BRC_LANES; i++)
+            brc_lanes_put(to[i] + k, part[k + i]);
     }
 }
 
@@ -67,20 +91,34 @@ BRC_LANES_INLINE brc_lanes relative_path(const struct poly_row_group *g, const b
     return 1.1 * dt * speed + dt * dt * brc_lanes_dot(g->wa, g->wa) * (reach_a + 2 * reach_b);
 }
 
-BRC_LANES_INLINE void motion_of_group(struct poly_block *block, struct poly_row_group *g,
-                                      const struct numbers *i)
+BRC_LANES_INLINE void viscosities(struct frames *f, const struct poly_block *block,
+                                  const struct numbers *i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    brc_lanes ma = gather(block->sim->bodies.true_mass, i->a);
+    brc_lanes mb = gather(block->sim->bodies.true_mass, i->b);
+    brc_lanes effective = ma * mb / (ma + mb);
+    f->gn = p->gn * effective;
+    f->gt = p->gt * effective;
+}
+
+BRC_LANES_INLINE void motion_of_group(const struct poly_block *block, struct poly_row_group *g,
+                                      struct frames *f, const struct numbers *i)
 {
     const struct brc_bodies *bodies = &block->sim->bodies;
-    brc_lanes xb[3], va[3], vb[3];
-    brc_lanes_gather3(g->xa, bodies->x, i->a);
+    brc_lanes xa[3], xb[3], va[3], vb[3];
+    brc_lanes_gather3(xa, bodies->x, i->a);
     brc_lanes_gather3(xb, bodies->x, i->b);
     brc_lanes_gather3(va, bodies->v, i->a);
     brc_lanes_gather3(vb, bodies->v, i->b);
     brc_lanes_gather3(g->wa, bodies->w, i->a);
     brc_lanes_gather3(g->wb, bodies->w, i->b);
-    sub(g->x, xb, g->xa);
+    sub(g->x, xb, xa);
     sub(g->dv, vb, va);
-    slip_of_row(g, block->sim->dt);
+    set(f->xa, xa[0], xa[1], xa[2]);
+    set(f->x, g->x[0], g->x[1], g->x[2]);
+    slip_of_row(f, g, block->sim->dt);
+    viscosities(f, block, i);
     g->path = relative_path(g, gather(bodies->reach, i->a),
                             gather(bodies->reach, i->b) + block->rest, block->sim->dt);
 }
@@ -205,17 +243,6 @@ BRC_LANES_INLINE void bond_of_group(struct poly_block *block, struct poly_row_gr
     g->broken = brc_lanes_where(bonds.intact, g->broken);
 }
 
-BRC_LANES_INLINE void viscosities(struct poly_block *block, struct poly_row_group *g,
-                                  const struct numbers *i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    brc_lanes ma = gather(block->sim->bodies.true_mass, i->a);
-    brc_lanes mb = gather(block->sim->bodies.true_mass, i->b);
-    brc_lanes effective = ma * mb / (ma + mb);
-    g->gn = p->gn * effective;
-    g->gt = p->gt * effective;
-}
-
 /* What rows have used of their room; calm rows have nothing to decide in this step. */
 BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_group *g,
                                      int32_t group)
@@ -236,17 +263,110 @@ BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_g
     }
 }
 
-BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion)
+/* --- condensed rows --------------------------------------------------------------------------- */
+
+/* Motion of four rows since their springs were computed, as POLY_SHIFT has it. */
+struct shifts {
+    brc_lanes d[3], path, turn[3], end, both[3], none;
+};
+
+/* Adds the motion of the step, and makes the frames those of the motion since then: slip and slope
+ * are displacements. */
+BRC_LANES_INLINE void add_shift(struct shifts *s, struct frames *f, const struct poly_row_group *g,
+                                double dt)
+{
+    const brc_lanes none = brc_lanes_all(0), *w = s->turn;
+    for (int k = 0; k < 3; k++) {
+        s->d[k] += dt * f->slip[k];
+        s->turn[k] += dt * (g->wb[k] - g->wa[k]);
+        s->both[k] += f->along[k].turn;
+        f->slip[k] = s->d[k];
+        f->along[k].turn = s->both[k];
+    }
+    s->path += g->path;
+    set(f->along[0].slope, none, -w[2], w[1]);
+    set(f->along[1].slope, w[2], none, -w[0]);
+    set(f->along[2].slope, -w[1], w[0], none);
+}
+
+/* Force and moment of the springs of four rows: what they were, turned with the pair, less the
+ * tangent times the motion. */
+BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *rows,
+                                     const struct shifts *s, const int32_t row[BRC_LANES])
+{
+    brc_lanes held[6], turned[6], both[3], part[BRC_LANES], motion[6];
+    const double *from[BRC_LANES];
+    brc_lanes_gather6(held, rows->held, row);
+    scale(both, s->both, brc_lanes_all(2));
+    brc_lanes_cross(turned, both, held);
+    brc_lanes_cross(turned + 3, both, held + 3);
+    set(motion, s->d[0], s->d[1], s->d[2]);
+    set(motion + 3, s->turn[0], s->turn[1], s->turn[2]);
+    for (int k = 0; k < 6; k++)
+        f[k] = held[k] + turned[k];
+    for (int k = 0; k < 36; k += BRC_LANES) {
+        for (int i = 0; i < BRC_LANES; i++)
+            from[i] = rows->tangent[row[i]] + k;
+        brc_lanes_gather4(part, from);
+        for (int j = k; j < k + BRC_LANES; j++)
+            f[j / 6] -= part[j - k] * motion[j % 6];
+    }
+    f[6] = f[7] = brc_lanes_all(0);
+}
+
+/* Rows that stay condensed in this step have their forces from the tangent; the points of the
+ * others are computed with the motion since they were computed last. */
+BRC_LANES_INLINE void hold_group(struct poly_block *block, int32_t group, struct frames *f,
+                                 const struct numbers *i)
+{
+    const struct poly_row_group *g = &block->group[group];
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    const double *from[BRC_LANES];
+    struct shifts s;
+    brc_lanes force[8], *part = (brc_lanes *)&s;
+    for (int k = 0; k < BRC_LANES; k++)
+        from[k] = rows->shift[i->row[k]];
+    for (int k = 0; k < POLY_SHIFT; k += BRC_LANES) {
+        brc_lanes_gather4(part + k, from);
+        for (int j = 0; j < BRC_LANES; j++)
+            from[j] += BRC_LANES;
+    }
+    add_shift(&s, f, g, block->sim->dt);
+    brc_mask held = brc_lanes_less(s.path, s.end);
+    if (poly_params_of(block->sim)->breakable)
+        held &= ~brc_lanes_less(brc_lanes_all(1), g->broken);
+    clear(force, sizeof force);
+    if (brc_lanes_any(held))
+        tangent_forces(force, rows, &s, i->row);
+    for (int k = 0; k < POLY_SHIFT; k += BRC_LANES)
+        brc_lanes_transpose(part + k);
+    brc_lanes_transpose(force);
+    brc_lanes_transpose(force + BRC_LANES);
+    for (int k = 0, n = BRC_LANES * group; k < BRC_LANES && n < block->n_rows; k++, n++) {
+        for (int j = 0; j < POLY_SHIFT; j += BRC_LANES)
+            brc_lanes_put(rows->shift[i->row[k]] + j, part[j + k]);
+        block->held[n] = held[k];
+        if (!held[k])
+            continue;
+        brc_lanes_put(block->sum[n], force[k]);
+        brc_lanes_put(block->sum[n] + BRC_LANES, force[BRC_LANES + k]);
+    }
+}
+
+BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion,
+                                    const bool condensed)
 {
     const struct brc_contacts *c = &block->sim->pairs;
     clear((brc_lanes *)block->sum, sizeof block->sum);
+    if (condensed)
+        clear((brc_lanes *)block->tangent, sizeof block->tangent);
     for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++) {
         struct poly_row_group *g = &block->group[group];
         struct numbers i;
+        struct frames f;
         bool has_bond = false;
         numbers_of(&i, block, group);
-        motion_of_group(block, g, &i);
-        viscosities(block, g, &i);
+        motion_of_group(block, g, &f, &i);
         for (int k = 0; k < BRC_LANES; k++)
             has_bond |= c->status[i.row[k]] == BRC_INTACT;
         g->k[0] = g->k[1] = g->k[2] = g->broken = brc_lanes_all(0);
@@ -254,6 +374,9 @@ BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion
         if (has_bond)
             bond_of_group(block, g, &i, torsion);
         rooms_of_group(block, g, group);
+        if (condensed)
+            hold_group(block, group, &f, &i);
+        put_frames(block->frame + BRC_LANES * group, &f);
     }
 }
 

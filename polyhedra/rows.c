@@ -173,7 +173,7 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
     if (c->status[row] == BRC_INTACT)
         return true;
     for (int32_t k = 0; k < c->np[row]; k++)
-        if (points->weight[(size_t)c->p0[row] + (size_t)k] > 0)
+        if (*poly_weight(points, (size_t)c->p0[row] + (size_t)k) > 0)
             return true;
     return false;
 }
@@ -236,9 +236,7 @@ static void copy_point(const struct poly_points *points, size_t to, size_t from)
     memcpy(points->item[to], points->item[from], sizeof points->item[from]);
     points->sleep[to] = points->sleep[from];
     points->hold[to] = points->hold[from];
-    points->weight[to] = points->weight[from];
-    memcpy(points->n[to], points->n[from], sizeof points->n[from]);
-    memcpy(points->xi[to], points->xi[from], sizeof points->xi[from]);
+    memcpy(points->spring[to], points->spring[from], sizeof points->spring[from]);
 }
 
 /* Moves the state of points that act to the front, in order; returns how many. */
@@ -246,7 +244,7 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
 {
     size_t kept = first;
     for (size_t p = first; p < first + n; p++) {
-        if (points->weight[p] <= 0)
+        if (*poly_weight(points, p) <= 0)
             continue;
         if (kept < p)
             copy_point(points, kept, p);
@@ -266,9 +264,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     points->hold[p] = hold;
     points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
     points->active[p] = 0;
-    points->weight[p] = 0;
-    brc_set(points->n[p], 0, 0, 0);
-    brc_set(points->xi[p], 0, 0, 0);
+    memset(points->spring[p], 0, sizeof points->spring[p]);
 }
 
 /* Order of the points that are awake, so that sums over them do not depend on how they came there.

@@ -205,13 +205,13 @@ static inline void poly_act(struct brc_ledger *ledger, struct poly_sums *s,
     if (friction || viscous)
         poly_slip(u, m, t->x);
     if (friction) {
-        poly_push_shear(ledger, s, t, law, m, u, points->xi[p], points->n[p], points->weight[p],
-                        arm);
-        brc_copy(points->n[p], t->n);
+        poly_push_shear(ledger, s, t, law, m, u, poly_xi(points, p), poly_normal(points, p),
+                        *poly_weight(points, p), arm);
+        brc_copy(poly_normal(points, p), t->n);
     }
     if (viscous)
         poly_push_viscous(s, t, law, u, arm);
-    points->weight[p] = t->weight;
+    *poly_weight(points, p) = t->weight;
 }
 
 /* Forces and moments of a row from its sums. */
