@@ -39,6 +39,21 @@ struct poly_row_group {
     brc_lanes work_normal, work_bond, work_viscous; /* J */
 };
 
+/* The bond of a row (struct poly_rows): in the frame of a and then in that of b the material point,
+ * the normal of the face, outward, and a tangent that is the same in space at the start; area and
+ * strain length. */
+enum {
+    POLY_BOND_CA,
+    POLY_BOND_AREA = 3,
+    POLY_BOND_CB,
+    POLY_BOND_LENGTH = 7,
+    POLY_BOND_NA,
+    POLY_BOND_NB = 12,
+    POLY_BOND_TA = 16,
+    POLY_BOND_TB = 20,
+    POLY_BOND = 24
+};
+
 /* A point's spring (struct poly_points), in one line of the cache. */
 enum { POLY_XI = 0, POLY_WEIGHT = 3, POLY_NORMAL = 4, POLY_SPRING = 8 };
 

@@ -50,15 +50,15 @@ void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, s
     int32_t a = c->a[row], b = c->b[row];
     const double(*ra)[3] = (const double(*)[3])st->turn[a];
     const double(*rb)[3] = (const double(*)[3])st->turn[b];
-    poly_to_space(pose->pa, ra, rows->ca[row]);
-    poly_to_space(pose->pb, rb, rows->cb[row]);
+    poly_to_space(pose->pa, ra, rows->bond[row] + POLY_BOND_CA);
+    poly_to_space(pose->pb, rb, rows->bond[row] + POLY_BOND_CB);
     brc_add(pose->pa, pose->pa, bodies->x[a]);
     brc_add(pose->pb, pose->pb, bodies->x[b]);
-    poly_to_space(pose->na, ra, rows->na[row]);
-    poly_to_space(pose->nb, rb, rows->nb[row]);
+    poly_to_space(pose->na, ra, rows->bond[row] + POLY_BOND_NA);
+    poly_to_space(pose->nb, rb, rows->bond[row] + POLY_BOND_NB);
     if (torsion) {
-        poly_to_space(pose->ta, ra, rows->ta[row]);
-        poly_to_space(pose->tb, rb, rows->tb[row]);
+        poly_to_space(pose->ta, ra, rows->bond[row] + POLY_BOND_TA);
+        poly_to_space(pose->tb, rb, rows->bond[row] + POLY_BOND_TB);
     }
 }
 
@@ -78,7 +78,7 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
                               .b = c->b[row],
                               .facet = c->facet[row],
                               .mode = (enum brc_mode)poly_bond_mode(r),
-                              .area = rows->area[row],
+                              .area = *poly_bond_area(rows, row),
                               .energy = r->energy - poly_work(none, &last, m)};
     brc_copy(event.x, r->x);
     brc_copy(event.n, r->n);
@@ -128,18 +128,11 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_block *block, bool condensed)
         __builtin_prefetch(rows->awake + row);
         __builtin_prefetch(rows->ready + row);
         __builtin_prefetch(rows->calm + row);
-        __builtin_prefetch(rows->area + row);
-        __builtin_prefetch(rows->length + row);
         fetch(c->f[row], sizeof c->f[row]);
         fetch(c->ta[row], sizeof c->ta[row]);
         fetch(c->tb[row], sizeof c->tb[row]);
         fetch(c->k[row], sizeof c->k[row]);
-        fetch(rows->ca[row], sizeof rows->ca[row]);
-        fetch(rows->cb[row], sizeof rows->cb[row]);
-        fetch(rows->na[row], sizeof rows->na[row]);
-        fetch(rows->nb[row], sizeof rows->nb[row]);
-        fetch(rows->ta[row], sizeof rows->ta[row]);
-        fetch(rows->tb[row], sizeof rows->tb[row]);
+        fetch(rows->bond[row], sizeof rows->bond[row]);
         fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
         fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
         if (!condensed)

@@ -180,16 +180,6 @@ BRC_LANES_INLINE void add_tangents(struct poly_block *block, const int32_t row[B
         block->loosest[row[i]] = poly_least(block->loosest[row[i]], t->delta[i]);
 }
 
-/* Values first to end of what rows keep, a row for each lane. */
-BRC_LANES_INLINE void gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int first,
-                                   int end)
-{
-    for (int k = first; k < end; k += BRC_LANES) {
-        const double *const p[BRC_LANES] = {from[0] + k, from[1] + k, from[2] + k, from[3] + k};
-        brc_lanes_gather4(r + k, p);
-    }
-}
-
 /* Adds the lanes to the sums of their rows, one after the other: the points of a row are summed in
  * the order of the lists. */
 BRC_LANES_INLINE void add_sums(struct poly_block *block, const int32_t row[BRC_LANES],
@@ -274,8 +264,8 @@ BRC_LANES_INLINE void act(struct poly_block *block, const struct poly_task *task
         frame[k] = block->frame[row[k]];
         from[k] = points->spring[task[k].point];
     }
-    gather_fours((brc_lanes *)&f, frame, 0, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
-    gather_fours((brc_lanes *)&springs, from, 0, POLY_SPRING);
+    gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
+    gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
     brc_lanes arm[3], old = springs.weight;
     sub(arm, t->x, f.xa);
     brc_mask slips = push_points(block, &s, t, &f, &springs, arm, condensed, friction, viscous, ledger);

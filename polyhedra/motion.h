@@ -123,6 +123,21 @@ BRC_LANES_INLINE void motion_of_group(const struct poly_block *block, struct pol
                             gather(bodies->reach, i->b) + block->rest, block->sim->dt);
 }
 
+/* Values first and on of what each of four rows has in its column, as fours. */
+BRC_LANES_INLINE void gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int n)
+{
+    for (int k = 0; k < n; k += BRC_LANES) {
+        const double *const p[BRC_LANES] = {from[0] + k, from[1] + k, from[2] + k, from[3] + k};
+        brc_lanes_gather4(r + k, p);
+    }
+}
+
+/* Four bonds, as POLY_BOND has them. */
+struct halves {
+    brc_lanes ca[3], area, cb[3], length, na[3], none_na, nb[3], none_nb, ta[3], none_ta, tb[3],
+        none_tb;
+};
+
 /* Constants of the bonds of four rows, as poly_bond_of; zero stiffness where there is none. */
 struct bonds {
     brc_lanes kn, kt, ktheta, length;
@@ -130,15 +145,14 @@ struct bonds {
 };
 
 BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_block *block,
-                                     const struct numbers *i)
+                                     const struct halves *halves, const struct numbers *i)
 {
     const struct poly_params *p = poly_params_of(block->sim);
     const struct brc_contacts *c = &block->sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
     const uint8_t status[BRC_LANES] = {c->status[i->row[0]], c->status[i->row[1]],
                                        c->status[i->row[2]], c->status[i->row[3]]};
     bonds->intact = brc_lanes_equal(status, BRC_INTACT);
-    brc_lanes area = gather(rows->area, i->row), length = gather(rows->length, i->row);
+    brc_lanes area = halves->area, length = halves->length;
     brc_lanes stiff = brc_lanes_where(bonds->intact, area / length);
     brc_lanes arm = p->torsion_length > 0 ? brc_lanes_all(p->torsion_length) : length;
     bonds->kn = p->bn * stiff;
@@ -147,22 +161,19 @@ BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_bloc
     bonds->length = length;
 }
 
-/* Four vectors of body frames in space; rotation matrices r, column of body vectors. */
-BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[3][3], double (*column)[3],
-                                    const int32_t row[BRC_LANES])
+/* Four vectors of body frames in space. */
+BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
 {
-    brc_lanes v[3];
-    brc_lanes_gather3(v, column, row);
-    set(out, brc_lanes_dot(r[0], v), brc_lanes_dot(r[1], v), brc_lanes_dot(r[2], v));
+    set(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
 }
 
-BRC_LANES_INLINE void gather_turn(brc_lanes r[3][3], double (*turn)[3][3],
-                                  const int32_t i[BRC_LANES])
+/* Rotation matrices of four bodies. */
+BRC_LANES_INLINE void gather_turn(brc_lanes r[9], double (*turn)[3][3], const int32_t i[BRC_LANES])
 {
-    for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-            r[k][l] =
-                (brc_lanes){turn[i[0]][k][l], turn[i[1]][k][l], turn[i[2]][k][l], turn[i[3]][k][l]};
+    const double *const from[BRC_LANES] = {turn[i[0]][0], turn[i[1]][0], turn[i[2]][0],
+                                           turn[i[3]][0]};
+    gather_fours(r, from, 8);
+    r[8] = (brc_lanes){from[0][8], from[1][8], from[2][8], from[3][8]};
 }
 
 /* poly_twist for four bonds. */
@@ -174,8 +185,11 @@ BRC_LANES_INLINE brc_lanes twist(const brc_lanes n[3], const brc_lanes ta[3], co
     brc_lanes x = brc_lanes_dot(ta, tb) - brc_lanes_dot(ta, n) * brc_lanes_dot(tb, n);
     brc_lanes y = brc_lanes_where(intact, brc_lanes_dot(c, n));
     x = brc_lanes_pick(intact, x, brc_lanes_all(1));
-    brc_lanes t = y / x, angle = t * (1 - t * t * (1.0 / 3 - t * t / 5));
-    brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(1e-3));
+    /* the series of the arc tangent: what it leaves out is below t^10 / 11 */
+    brc_lanes t = y / x, t2 = t * t;
+    brc_lanes angle =
+        t * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 * (1.0 / 7 - t2 * (1.0 / 9)))));
+    brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(0.03));
     if (brc_lanes_any(~small))
         for (int k = 0; k < BRC_LANES; k++)
             angle[k] = small[k] ? angle[k] : atan2(y[k], x[k]);
@@ -217,24 +231,28 @@ BRC_LANES_INLINE void bond_of_group(struct poly_block *block, struct poly_row_gr
                                     const struct numbers *i, const bool torsion)
 {
     const struct poly_rows *rows = block->sim->pairs.model_columns;
-    brc_lanes ra[3][3], rb[3][3], pa[3], pb[3], na[3], nb[3], ta[3], tb[3], n[3];
+    const double *const from[BRC_LANES] = {rows->bond[i->row[0]], rows->bond[i->row[1]],
+                                           rows->bond[i->row[2]], rows->bond[i->row[3]]};
+    brc_lanes ra[9], rb[9], pa[3], pb[3], na[3], nb[3], ta[3], tb[3], n[3];
+    struct halves halves;
     struct bonds bonds;
-    bonds_of_group(&bonds, block, i);
+    gather_fours((brc_lanes *)&halves, from, torsion ? POLY_BOND : POLY_BOND_TA);
+    bonds_of_group(&bonds, block, &halves, i);
     gather_turn(ra, block->st->turn, i->a);
     gather_turn(rb, block->st->turn, i->b);
     /* material points relative to the centre of a */
-    body_to_space(pa, ra, rows->ca, i->row);
-    body_to_space(pb, rb, rows->cb, i->row);
+    body_to_space(pa, ra, halves.ca);
+    body_to_space(pb, rb, halves.cb);
     add(pb, pb, g->x);
-    body_to_space(na, ra, rows->na, i->row);
-    body_to_space(nb, rb, rows->nb, i->row);
+    body_to_space(na, ra, halves.na);
+    body_to_space(nb, rb, halves.nb);
     sub(n, na, nb);
     scale(n, n, 1 / brc_lanes_sqrt(brc_lanes_dot(n, n)));
     mask(n, bonds.intact, n);
     brc_lanes twisted = brc_lanes_all(0);
     if (torsion) {
-        body_to_space(ta, ra, rows->ta, i->row);
-        body_to_space(tb, rb, rows->tb, i->row);
+        body_to_space(ta, ra, halves.ta);
+        body_to_space(tb, rb, halves.tb);
         twisted = twist(n, ta, tb, bonds.intact);
     } else {
         bonds.ktheta = brc_lanes_all(0);
@@ -294,7 +312,7 @@ BRC_LANES_INLINE void add_shift(struct shifts *s, struct frames *f, const struct
 BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *rows,
                                      const struct shifts *s, const int32_t row[BRC_LANES])
 {
-    brc_lanes held[6], turned[6], both[3], part[BRC_LANES], motion[6];
+    brc_lanes held[6], turned[6], both[3], slope[36], motion[6];
     const double *from[BRC_LANES];
     brc_lanes_gather6(held, rows->held, row);
     scale(both, s->both, brc_lanes_all(2));
@@ -304,13 +322,11 @@ BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *row
     set(motion + 3, s->turn[0], s->turn[1], s->turn[2]);
     for (int k = 0; k < 6; k++)
         f[k] = held[k] + turned[k];
-    for (int k = 0; k < 36; k += BRC_LANES) {
-        for (int i = 0; i < BRC_LANES; i++)
-            from[i] = rows->tangent[row[i]] + k;
-        brc_lanes_gather4(part, from);
-        for (int j = k; j < k + BRC_LANES; j++)
-            f[j / 6] -= part[j - k] * motion[j % 6];
-    }
+    for (int i = 0; i < BRC_LANES; i++)
+        from[i] = rows->tangent[row[i]];
+    gather_fours(slope, from, 36);
+    for (int k = 0; k < 36; k++)
+        f[k / 6] -= slope[k] * motion[k % 6];
     f[6] = f[7] = brc_lanes_all(0);
 }
 
@@ -326,11 +342,7 @@ BRC_LANES_INLINE void hold_group(struct poly_block *block, int32_t group, struct
     brc_lanes force[8], *part = (brc_lanes *)&s;
     for (int k = 0; k < BRC_LANES; k++)
         from[k] = rows->shift[i->row[k]];
-    for (int k = 0; k < POLY_SHIFT; k += BRC_LANES) {
-        brc_lanes_gather4(part + k, from);
-        for (int j = 0; j < BRC_LANES; j++)
-            from[j] += BRC_LANES;
-    }
+    gather_fours(part, from, POLY_SHIFT);
     add_shift(&s, f, g, block->sim->dt);
     brc_mask held = brc_lanes_less(s.path, s.end);
     if (poly_params_of(block->sim)->breakable)

@@ -64,14 +64,7 @@ struct poly_params {
     SCALAR(int32_t, awake, BRC_STATE, "1", "points that are looked at; the others sleep")       \
     SCALAR(double, calm, BRC_SCRATCH, "m", "items stay right while there is more room than so") \
     SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")      \
-    VECTOR(double, ca, 3, BRC_STATE, "m", "material point of the bond in the frame of a")       \
-    VECTOR(double, cb, 3, BRC_STATE, "m", "the same in the frame of b")                         \
-    VECTOR(double, na, 3, BRC_STATE, "1", "normal of the face of a, outward, in its frame")     \
-    VECTOR(double, nb, 3, BRC_STATE, "1", "normal of the face of b, outward, in its frame")     \
-    VECTOR(double, ta, 3, BRC_STATE, "1", "tangent of the bond in the frame of a")              \
-    VECTOR(double, tb, 3, BRC_STATE, "1", "the same direction at the start, in the frame of b") \
-    SCALAR(double, area, BRC_STATE, "m2", "area of the bond")                                   \
-    SCALAR(double, length, BRC_STATE, "m", "strain length of the bond")                         \
+    VECTOR(double, bond, POLY_BOND, BRC_STATE, "m, 1, m2", "bond, in both frames (POLY_BOND)")  \
     VECTOR(double, shift, POLY_SHIFT, BRC_STATE, "m, 1",                                        \
            "condensed: motion since the springs were computed (POLY_SHIFT)")                    \
     VECTOR(double, held, 6, BRC_STATE, "N, N m", "condensed: force and moment about a then")    \
@@ -84,6 +77,16 @@ struct poly_params {
 struct poly_rows {
     POLY_ROW_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
+
+static inline double *poly_bond_area(const struct poly_rows *rows, size_t row)
+{
+    return rows->bond[row] + POLY_BOND_AREA;
+}
+
+static inline double *poly_bond_length(const struct poly_rows *rows, size_t row)
+{
+    return rows->bond[row] + POLY_BOND_LENGTH;
+}
 
 /* Points: feature pairs near enough to touch before the row is listed anew. */
 #define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                      \
