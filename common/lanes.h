@@ -169,6 +169,19 @@ BRC_LANES_INLINE void brc_lanes_transpose(brc_lanes r[BRC_LANES])
     r[3] = __builtin_shufflevector(odd, odd_up, 2, 3, 6, 7);
 }
 
+/* Four values from each of four places, to lanes: lane i of r[j] is p[i][j]. */
+BRC_LANES_INLINE void brc_lanes_gather4(brc_lanes r[BRC_LANES], const double *const p[BRC_LANES])
+{
+    for (int k = 0; k < BRC_LANES; k += 2) {
+        brc_lanes even = __builtin_shufflevector(*(const brc_pair_loose *)(p[0] + k),
+                                                 *(const brc_pair_loose *)(p[2] + k), 0, 1, 2, 3);
+        brc_lanes odd = __builtin_shufflevector(*(const brc_pair_loose *)(p[1] + k),
+                                                *(const brc_pair_loose *)(p[3] + k), 0, 1, 2, 3);
+        r[k] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+        r[k + 1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+    }
+}
+
 /* Four rows of 3 values, one after the other, to and from lanes. */
 BRC_LANES_INLINE void brc_lanes_at3(brc_lanes r[3], double (*x)[3])
 {

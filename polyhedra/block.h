@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over grain pairs works on blocks of rows: their feature pairs are sorted into work lists
- * by what must be computed, four at a time, and the touches come back row by row. A block fits in
- * the cache; nothing in it outlives it. */
+/* The loop over grain pairs works on blocks of rows: their feature pairs are sorted into lists by
+ * what must be computed, and worked off four at a time, of whatever rows the four are. A block fits
+ * in the cache; nothing in it outlives it. */
 #ifndef POLY_BLOCK_H
 #define POLY_BLOCK_H
 
@@ -13,13 +13,12 @@
 #include <string.h>
 
 enum {
-    POLY_ROWS = 64,         /* of a block */
-    POLY_SLOTS = 1024,      /* touches at a time; a row begins at a multiple of BRC_LANES */
-    POLY_SPARE = POLY_SLOTS /* slots that nobody reads */
+    POLY_ROWS = 32,   /* of a block; row POLY_ROWS is what nobody reads */
+    POLY_TASKS = 1024 /* points at a time */
 };
 
-/* Four touches of one row, as in struct poly_touch; where nothing touches all is zero but for
- * delta, and -delta is a relative path of the bodies that cannot bring them in touch. */
+/* Four touches, as in struct poly_touch; where nothing touches all is zero but for delta, and
+ * -delta is a relative path of the bodies that cannot bring them in touch. */
 struct poly_touches {
     brc_lanes n[3], x[3], delta, weight, g[3], c[3];
 };
@@ -31,19 +30,37 @@ struct poly_wrenches {
 
 /* Four rows. */
 struct poly_row_group {
-    /* from a to b; relative velocity and spins */
-    brc_lanes xa[3], x[3], dv[3], wa[3], wb[3];
-    /* b moves at slip + slope . arm relative to a, arm from a; turn is a quarter of the sum of both
-     * turns in the step */
-    brc_lanes slip[3], slope[3][3], turn[3];
+    brc_lanes x[3], dv[3], wa[3], wb[3]; /* from a to b; relative velocity and spins */
     brc_lanes path;   /* m, relative path of the step */
     brc_lanes broken; /* > 1: the bond breaks */
-    brc_lanes gn, gt; /* N s/m, viscosities */
     brc_lanes k[3], gap;
     struct poly_wrenches bond;
     brc_lanes stored, slid;                         /* J, of the tangential springs */
     brc_lanes work_normal, work_bond, work_viscous; /* J */
 };
+
+/* The bond of a row (struct poly_rows): in the frame of a and then in that of b the material point,
+ * the normal of the face, outward, and a tangent that is the same in space at the start; area and
+ * strain length. */
+enum {
+    POLY_BOND_CA,
+    POLY_BOND_AREA = 3,
+    POLY_BOND_CB,
+    POLY_BOND_LENGTH = 7,
+    POLY_BOND_NA,
+    POLY_BOND_NB = 12,
+    POLY_BOND_TA = 16,
+    POLY_BOND_TB = 20,
+    POLY_BOND = 24
+};
+
+/* A point's spring (struct poly_points), in one line of the cache. */
+enum { POLY_XI = 0, POLY_WEIGHT = 3, POLY_NORMAL = 4, POLY_SPRING = 8 };
+
+/* Motion of a row since its springs were computed (struct poly_rows, shift): displacement of b
+ * relative to a at the centre of a, path, turn of b relative to a, path at which they are computed
+ * anew (0: at each step), a quarter of the sum of both turns. */
+enum { POLY_SHIFT_PATH = 3, POLY_SHIFT_TURN = 4, POLY_SHIFT_END = 7, POLY_SHIFT_BOTH, POLY_SHIFT = 12 };
 
 /* What a point's touch is computed from (struct poly_points, item): numbers of st->world and
  * st->plane, so that nothing else of the point need be looked at while its row is calm. */
@@ -51,12 +68,12 @@ enum {
     /* a vertex of one core at a known place of the other */
     POLY_ITEM_VERTEX,
     POLY_ITEM_PLACE, /* plane; or both ends of the edge, twice the same for a vertex */
-    POLY_ITEM_NEAR = POLY_ITEM_PLACE + 2, /* POLY_NEAR vertices, -1: none; or first and number */
+    POLY_ITEM_NEAR = POLY_ITEM_PLACE + 2, /* vertices that may lower the weight, or the first */
     /* edges: four ends, 1 or -1 for the side (0: not known), reach of struct poly_pair */
     POLY_ITEM_END = 0,
     POLY_ITEM_SIDE = POLY_ITEM_END + 4,
     POLY_ITEM_REACH,
-    POLY_ITEM_LIST = 7, /* of the block, + POLY_OF_A; POLY_NO_LIST: not set */
+    POLY_ITEM_LIST = 7, /* of the block, and what follows; POLY_NO_LIST: not set */
     POLY_ITEM
 };
 
@@ -67,32 +84,40 @@ static inline double poly_item_reach(const int32_t *item)
     return reach;
 }
 
-/* Lists of vertices: by the place of the foot (plane; edge or vertex) and by how many vertices of
- * the other core may lower the weight: up to one, up to POLY_NEAR, any number. Then that of edges.
- */
+/* Lists of a block: vertices by the place of the foot (plane; edge or vertex), edges, and touches
+ * that are known already (block->known). */
 enum {
     POLY_NO_LIST,
     POLY_FLAT,
-    POLY_FLAT_NEAR,
-    POLY_FLAT_ALL,
     POLY_SHARP,
-    POLY_SHARP_NEAR,
-    POLY_SHARP_ALL,
     POLY_CROSSING,
+    POLY_KNOWN,
     POLY_N_LISTS,
-    POLY_OF_A = 8 /* added where the vertex belongs to a */
+    POLY_LIST = 7, /* mask */
+    /* of an item */
+    POLY_OF_A = 8,     /* the vertex belongs to a */
+    POLY_IN_TURN = 16, /* vertices near: all from the first on, in turn */
+    POLY_NEAR_SHIFT = 5 /* how many vertices are near, from this bit on */
 };
 
-/* A point to look at, and where its touch goes. */
+/* A point to look at, of a row of the block. */
 struct poly_task {
-    int32_t slot, point;
+    int32_t row, point;
 };
 
-struct poly_segment {
-    int32_t row, slot, n; /* row of the block; slots */
-    int32_t point;        /* of the first slot */
-    bool follow;          /* the other points follow it; else block->point has them */
-    bool fresh;           /* some points begin to touch */
+/* A point that does not touch. */
+struct poly_apart {
+    int32_t row, point;
+    double path;
+};
+
+/* What the points of a row want of it, in fours for gathers. */
+enum {
+    POLY_FRAME_XA,        /* centre of a; then viscosity along the normal */
+    POLY_FRAME_X = 4,     /* from a to b; then viscosity across it */
+    POLY_FRAME_SLIP = 8,  /* struct poly_row_group */
+    POLY_FRAME_TURN = 12, /* a row of slope, then a part of turn, three times */
+    POLY_FRAME = 24
 };
 
 /* Sums over the points of a row. */
@@ -110,21 +135,26 @@ struct poly_block {
     struct brc_sim *sim;
     struct poly_state *st;
     double kn, kt, stiff; /* N/m; stiff: the larger one of those that act */
+    double limit;         /* of xi per overlap */
     double rest, ell, skin;
-    int32_t n_rows, n_slots, n_segments;
+    int32_t n_rows, n_points, n_apart;
     int32_t n_ahead, ahead[POLY_ROWS];                  /* rows of the next block */
     int32_t row[POLY_ROWS], a[POLY_ROWS], b[POLY_ROWS]; /* filled up to whole groups */
     bool listed[POLY_ROWS], calm[POLY_ROWS];
+    bool held[POLY_ROWS];     /* its points are not looked at */
+    bool open[POLY_ROWS + 1]; /* some of its points are apart */
     struct poly_pair pair; /* of the row pair_row */
     int32_t pair_row;
     int32_t n_tasks[POLY_N_LISTS];
-    struct poly_segment segment[POLY_ROWS];
-    int32_t point[POLY_SLOTS];
-    _Alignas(64) double sum[POLY_ROWS][POLY_SUMS];
-    double nearest[POLY_ROWS]; /* the smallest gap of its points */
+    double nearest[POLY_ROWS + 1]; /* the smallest gap of a row's points */
+    double loosest[POLY_ROWS + 1]; /* the smallest overlap, while it is condensed */
+    _Alignas(64) double frame[POLY_ROWS + 1][POLY_FRAME];
+    double sum[POLY_ROWS + 1][POLY_SUMS];
+    double tangent[POLY_ROWS + 1][36];
     struct poly_row_group group[POLY_ROWS / BRC_LANES];
-    struct poly_touches touch[POLY_SLOTS / BRC_LANES + 1];
-    struct poly_task task[POLY_N_LISTS][POLY_SLOTS + BRC_LANES];
+    struct poly_touches known[POLY_TASKS / BRC_LANES];
+    struct poly_task task[POLY_N_LISTS][POLY_TASKS + BRC_LANES];
+    struct poly_apart apart[POLY_TASKS];
 };
 
 /* What is done four at a time. */
@@ -135,8 +165,7 @@ typedef int poly_list_kernel(struct brc_context *ctx, struct poly_list *l,
 struct poly_kernels {
     poly_list_kernel *list; /* poly_list_features */
     poly_kernel *motion;    /* motion and bonds of the rows */
-    poly_kernel *touch;     /* the work lists */
-    poly_kernel *points;    /* forces of the touches */
+    poly_kernel *points;    /* the lists: touches, forces, springs */
     poly_kernel *finish;    /* sums of the rows, their works */
 };
 /* kernels.h for each instruction set: the kernels for the options of a simulation. */

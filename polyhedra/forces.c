@@ -3,6 +3,10 @@
  * be computed goes into work lists, and kernels.c does it four at a time. */
 #include "step.h"
 
+/* A row is condensed when that is for this many steps or more: to find its tangent costs as much as
+ * a step. */
+static const double CONDENSE = 3;
+
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -46,15 +50,15 @@ void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, s
     int32_t a = c->a[row], b = c->b[row];
     const double(*ra)[3] = (const double(*)[3])st->turn[a];
     const double(*rb)[3] = (const double(*)[3])st->turn[b];
-    poly_to_space(pose->pa, ra, rows->ca[row]);
-    poly_to_space(pose->pb, rb, rows->cb[row]);
+    poly_to_space(pose->pa, ra, rows->bond[row] + POLY_BOND_CA);
+    poly_to_space(pose->pb, rb, rows->bond[row] + POLY_BOND_CB);
     brc_add(pose->pa, pose->pa, bodies->x[a]);
     brc_add(pose->pb, pose->pb, bodies->x[b]);
-    poly_to_space(pose->na, ra, rows->na[row]);
-    poly_to_space(pose->nb, rb, rows->nb[row]);
+    poly_to_space(pose->na, ra, rows->bond[row] + POLY_BOND_NA);
+    poly_to_space(pose->nb, rb, rows->bond[row] + POLY_BOND_NB);
     if (torsion) {
-        poly_to_space(pose->ta, ra, rows->ta[row]);
-        poly_to_space(pose->tb, rb, rows->tb[row]);
+        poly_to_space(pose->ta, ra, rows->bond[row] + POLY_BOND_TA);
+        poly_to_space(pose->tb, rb, rows->bond[row] + POLY_BOND_TB);
     }
 }
 
@@ -74,7 +78,7 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
                               .b = c->b[row],
                               .facet = c->facet[row],
                               .mode = (enum brc_mode)poly_bond_mode(r),
-                              .area = rows->area[row],
+                              .area = *poly_bond_area(rows, row),
                               .energy = r->energy - poly_work(none, &last, m)};
     brc_copy(event.x, r->x);
     brc_copy(event.n, r->n);
@@ -108,7 +112,7 @@ BRC_LANES_INLINE void fetch(const void *at, size_t size)
 
 /* What the step reads of the rows of the next block, while this one is worked on: the step waits
  * for memory more than for anything else. */
-BRC_LANES_INLINE void fetch_rows(const struct poly_block *block)
+BRC_LANES_INLINE void fetch_rows(const struct poly_block *block, bool condensed)
 {
     const struct brc_contacts *c = &block->sim->pairs;
     const struct poly_rows *rows = c->model_columns;
@@ -124,20 +128,18 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_block *block)
         __builtin_prefetch(rows->awake + row);
         __builtin_prefetch(rows->ready + row);
         __builtin_prefetch(rows->calm + row);
-        __builtin_prefetch(rows->area + row);
-        __builtin_prefetch(rows->length + row);
         fetch(c->f[row], sizeof c->f[row]);
         fetch(c->ta[row], sizeof c->ta[row]);
         fetch(c->tb[row], sizeof c->tb[row]);
         fetch(c->k[row], sizeof c->k[row]);
-        fetch(rows->ca[row], sizeof rows->ca[row]);
-        fetch(rows->cb[row], sizeof rows->cb[row]);
-        fetch(rows->na[row], sizeof rows->na[row]);
-        fetch(rows->nb[row], sizeof rows->nb[row]);
-        fetch(rows->ta[row], sizeof rows->ta[row]);
-        fetch(rows->tb[row], sizeof rows->tb[row]);
+        fetch(rows->bond[row], sizeof rows->bond[row]);
         fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
         fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
+        if (!condensed)
+            continue;
+        fetch(rows->shift[row], sizeof rows->shift[row]);
+        fetch(rows->held[row], sizeof rows->held[row]);
+        fetch(rows->tangent[row], sizeof rows->tangent[row]);
     }
 }
 
@@ -153,9 +155,7 @@ BRC_LANES_INLINE void fetch_points(const struct poly_block *block)
         if (n == 0)
             continue;
         fetch(points->item[p], n * sizeof points->item[p]);
-        fetch(points->xi[p], n * sizeof points->xi[p]);
-        fetch(points->n[p], n * sizeof points->n[p]);
-        fetch(points->weight + p, n * sizeof points->weight[p]);
+        fetch(points->spring[p], n * sizeof points->spring[p]);
     }
 }
 
@@ -217,6 +217,27 @@ static int prepare_row(struct poly_block *block, int32_t i)
     return 0;
 }
 
+/* A bonded row whose springs have all been computed, and all touch, is condensed until it has moved
+ * by the path for which they stay what they are. */
+static void condense_row(struct poly_block *block, int32_t i)
+{
+    const struct brc_sim *sim = block->sim;
+    const struct poly_rows *rows = sim->pairs.model_columns;
+    const struct poly_params *p = poly_params_of(sim);
+    size_t row = (size_t)block->row[i];
+    double *shift = rows->shift[row], path = block->group[i / BRC_LANES].path[i % BRC_LANES];
+    double end = poly_least(p->intact_path * p->radius, block->loosest[i]);
+    end = poly_least(end, rows->room[row] - rows->calm[row]);
+    memset(shift, 0, sizeof rows->shift[row]);
+    if (sim->pairs.status[row] != BRC_INTACT || !block->listed[i] || rows->awake[row] == 0 ||
+        block->open[i] || end < CONDENSE * path)
+        return;
+    shift[POLY_SHIFT_END] = end;
+    for (int k = 0; k < 6; k++)
+        rows->held[row][k] = block->sum[i][POLY_SUM_NORMAL + k] + block->sum[i][POLY_SUM_SHEAR + k];
+    memcpy(rows->tangent[row], block->tangent[i], sizeof rows->tangent[row]);
+}
+
 /* Stiffness of row i of the block; works into the ledger. */
 static void store_row(struct poly_block *block, int32_t i, bool viscous)
 {
@@ -225,8 +246,10 @@ static void store_row(struct poly_block *block, int32_t i, bool viscous)
     const struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     int lane = i % BRC_LANES;
-    c->gap[row] = g->gap[lane];
-    poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
+    if (!block->held[i]) {
+        c->gap[row] = g->gap[lane];
+        poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
+    }
     if (!BRC_OPTION(sim->run.ledger))
         return;
     sim->ledger.contact_normal += g->work_normal[lane];
@@ -246,11 +269,13 @@ static void open_block(struct poly_block *block, struct brc_sim *sim, struct pol
     block->kn = law.kn;
     block->kt = law.kt;
     block->stiff = law.mu > 0 && law.kt > 0 ? poly_most(law.kn, law.kt) : law.kn;
+    block->limit = law.mu * law.kn / law.kt;
     block->rest = radius + radius;
     block->ell = radius;
     block->skin = POLY_LIST_SKIN * radius;
     block->pair_row = -1;
-    block->n_slots = block->n_segments = 0;
+    block->n_points = 0;
+    memset(block->held, 0, sizeof block->held);
     memset(block->n_tasks, 0, sizeof block->n_tasks);
 }
 
@@ -260,26 +285,32 @@ void poly_forces(struct brc_sim *sim, void *state)
     struct poly_block *block = st->block;
     const struct poly_params *p = poly_params_of(sim);
     bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
+    bool condensed = poly_is_condensed(sim);
     poly_world(sim, st);
     open_block(block, sim, st);
     size_t row = look_ahead(block, 0);
     while (block->n_ahead > 0) {
         take_rows(block);
         row = look_ahead(block, row);
-        fetch_rows(block);
+        fetch_rows(block, condensed);
         st->kernels.motion(block);
         for (int32_t i = 0; i < block->n_rows; i++) {
-            block->nearest[i] = HUGE_VAL;
+            block->nearest[i] = block->loosest[i] = HUGE_VAL;
+            block->open[i] = false;
             if (!block->calm[i] && prepare_row(block, i) != 0)
                 return;
         }
         for (int32_t i = 0; i < block->n_rows; i++)
-            poly_list_points(block, i);
+            if (!block->held[i])
+                poly_list_points(block, i);
         fetch_points(block);
         poly_work_off(block);
         st->kernels.finish(block);
-        for (int32_t i = 0; i < block->n_rows; i++)
+        for (int32_t i = 0; i < block->n_rows; i++) {
             store_row(block, i, viscous);
+            if (condensed && !block->held[i])
+                condense_row(block, i);
+        }
     }
 }
 

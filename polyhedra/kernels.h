@@ -11,25 +11,18 @@
 
 /* --- forces of touches ------------------------------------------------------------------------ */
 
-/* One row, the same in all lanes. */
-struct row_of_points {
-    brc_lanes xa[3], x[3], slip[3], slope[3][3], turn[3], gn, gt;
-    double kn, kt, limit; /* limit: of xi per overlap */
-};
-
-/* Sums over the points of a row. */
+/* What four points add to the sums of their rows (POLY_SUM_NORMAL and so on). */
 struct sums {
-    struct poly_wrenches normal, shear, viscous;
-    brc_lanes k[3], gap, stored, slid;
-    brc_mask fresh;
+    struct poly_wrenches normal, shear;
+    brc_lanes k[3], stored, slid;
+    struct poly_wrenches viscous;
+    brc_lanes none;
 };
 
 BRC_LANES_INLINE void push(struct poly_wrenches *w, const brc_lanes f[3], const brc_lanes arm[3])
 {
-    brc_lanes m[3];
-    brc_lanes_cross(m, arm, f);
-    add(w->f, w->f, f);
-    add(w->m, w->m, m);
+    set(w->f, f[0], f[1], f[2]);
+    brc_lanes_cross(w->m, arm, f);
 }
 
 /* Elastic normal force (eq 4), with the gradient part under `merged`. */
@@ -39,8 +32,8 @@ BRC_LANES_INLINE void push_normal(struct sums *s, const struct poly_touches *t, 
     brc_lanes f[3], grade = -0.5 * kn * t->delta * t->delta;
     scale(f, t->n, kn * t->weight * t->delta); /* eq:gt12:4 */
     axpy(f, grade, t->g);
-    axpy(s->normal.m, grade, t->c);
     push(&s->normal, f, arm);
+    axpy(s->normal.m, grade, t->c);
 }
 
 /* Old tangential displacement turned with the contact frame: tilt from the old to the new normal,
@@ -48,81 +41,76 @@ BRC_LANES_INLINE void push_normal(struct sums *s, const struct poly_touches *t, 
 BRC_LANES_INLINE void turn_spring(brc_lanes xi[3], const brc_lanes n_old[3], const brc_lanes n[3],
                                   brc_lanes t)
 {
-    brc_lanes r[3], a[3], per = 1 / (1 + t * t), c = brc_lanes_dot(n_old, n);
+    brc_lanes r[3], a[3], c = brc_lanes_dot(n_old, n), t2 = 1 + t * t, tilt = 1 + c;
+    brc_lanes both = 1 / (t2 * tilt), per = both * tilt;
     brc_lanes_cross(r, n_old, n);
-    brc_lanes along = brc_lanes_dot(r, xi) / (1 + c);
+    brc_lanes along = brc_lanes_dot(r, xi) * (both * t2);
     brc_lanes_cross(a, r, xi);
     for (int i = 0; i < 3; i++)
         xi[i] = c * xi[i] + a[i] + along * r[i];
     brc_lanes_cross(a, n, xi);
     for (int i = 0; i < 3; i++)
-        xi[i] = ((1 - t * t) * xi[i] + 2 * t * a[i]) * per;
+        xi[i] = ((2 - t2) * xi[i] + 2 * t * a[i]) * per;
 }
 
-/* Adds the tangential part of du to xi and caps it (eqs 8-9): what is left over has slipped. */
-BRC_LANES_INLINE void slide_spring(brc_lanes xi[3], const brc_lanes n[3], const brc_lanes du[3],
+/* Adds the tangential part of du to xi and caps it (eqs 8-9): what is left over has slipped.
+ * Returns where it has. */
+BRC_LANES_INLINE brc_mask slide_spring(brc_lanes xi[3], const brc_lanes n[3], const brc_lanes du[3],
                                    brc_lanes limit)
 {
     add(xi, xi, du); /* eq:gt12:9 */
     axpy(xi, -brc_lanes_dot(xi, n), n);
     brc_lanes xi2 = brc_lanes_dot(xi, xi);
-    brc_lanes cap = brc_lanes_pick(brc_lanes_less(limit * limit, xi2), limit / brc_lanes_sqrt(xi2),
-                                   brc_lanes_all(1));
-    scale(xi, xi, cap); /* eq:gt12:8 */
+    brc_mask slips = brc_lanes_less(limit * limit, xi2);
+    scale(xi, xi,
+          brc_lanes_pick(slips, limit / brc_lanes_sqrt(xi2), brc_lanes_all(1))); /* eq:gt12:8 */
+    return slips;
 }
 
-/* State of four points: where they follow each other in their columns, or are put together. */
+/* Springs of four points, as POLY_SPRING has them. */
 struct springs {
-    double (*xi)[3], (*n)[3], *weight;
+    brc_lanes xi[3], weight, n[3], none;
 };
-
-/* Four vectors from p on become those of a where the mask is set; old is what they are. */
-BRC_LANES_INLINE void keep3(double (*p)[3], brc_mask m, const brc_lanes a[3],
-                            const brc_lanes old[3])
-{
-    brc_lanes r[3];
-    for (int k = 0; k < 3; k++)
-        r[k] = brc_lanes_pick(m, a[k], old[k]);
-    brc_lanes_put3(p, r);
-}
 
 /* Tangential springs: xi and the normals of the last step become those of now; old is the weight
  * that they had, where they touch now. */
-BRC_LANES_INLINE void push_shear(const struct springs *p, struct sums *s,
-                                 const struct poly_touches *t, const struct row_of_points *row,
+BRC_LANES_INLINE brc_mask push_shear(struct springs *p, struct sums *s, const struct poly_touches *t,
+                                 const struct frames *row, const struct poly_block *block,
                                  const brc_lanes du[3], const brc_lanes arm[3], brc_lanes old,
                                  const bool ledger)
 {
-    brc_lanes xi[3], xi_old[3], n_old[3], before[3], f[3];
+    brc_lanes xi[3], before[3], f[3], turn[3];
     brc_mask touches = positive(t->weight);
-    brc_lanes_at3(xi_old, p->xi);
-    brc_lanes_at3(n_old, p->n);
-    set(xi, xi_old[0], xi_old[1], xi_old[2]);
-    turn_spring(xi, n_old, t->n, brc_lanes_dot(row->turn, t->n));
+    set(xi, p->xi[0], p->xi[1], p->xi[2]);
+    set(turn, row->along[0].turn, row->along[1].turn, row->along[2].turn);
+    turn_spring(xi, p->n, t->n, brc_lanes_dot(turn, t->n));
     mask(xi, positive(old), xi);
     set(before, xi[0], xi[1], xi[2]);
-    slide_spring(xi, t->n, du, row->limit * t->delta);
+    brc_mask slips = slide_spring(xi, t->n, du, block->limit * t->delta);
     mask(xi, touches, xi);
-    scale(f, xi, -row->kt * t->weight); /* eq:gt12:8 */
+    scale(f, xi, -block->kt * t->weight); /* eq:gt12:8 */
     push(&s->shear, f, arm);
-    keep3(p->xi, touches, xi, xi_old);
-    keep3(p->n, touches, t->n, n_old);
+    for (int k = 0; k < 3; k++) {
+        p->xi[k] = brc_lanes_pick(touches, xi[k], p->xi[k]);
+        p->n[k] = brc_lanes_pick(touches, t->n[k], p->n[k]);
+    }
     if (!ledger)
-        return;
+        return slips;
     brc_lanes part[3], along = brc_lanes_dot(du, t->n);
     for (int k = 0; k < 3; k++)
         part[k] = (old * before[k] + t->weight * xi[k]);
     brc_lanes work = brc_lanes_dot(part, du) - along * brc_lanes_dot(part, t->n);
-    s->slid += 0.5 * row->kt * work;
-    s->stored +=
-        0.5 * row->kt * (t->weight * brc_lanes_dot(xi, xi) - old * brc_lanes_dot(before, before));
+    s->slid = 0.5 * block->kt * work;
+    s->stored =
+        0.5 * block->kt * (t->weight * brc_lanes_dot(xi, xi) - old * brc_lanes_dot(before, before));
+    return slips;
 }
 
 BRC_LANES_INLINE void push_viscous(struct sums *s, const struct poly_touches *t,
-                                   const struct row_of_points *row, const brc_lanes u[3],
-                                   const brc_lanes arm[3])
+                                   const struct frames *row, const struct poly_block *block,
+                                   const brc_lanes u[3], const brc_lanes arm[3])
 {
-    const double kn = row->kn;
+    const double kn = block->kn;
     brc_lanes f[3], vn = brc_lanes_dot(u, t->n), gt = t->weight * row->gt;
     brc_lanes normal =
         brc_lanes_max(-t->weight * row->gn * vn, -kn * t->weight * t->delta); /* eq:gt12:10 */
@@ -131,158 +119,211 @@ BRC_LANES_INLINE void push_viscous(struct sums *s, const struct poly_touches *t,
     push(&s->viscous, f, arm);
 }
 
-BRC_LANES_INLINE void push_group(const struct poly_block *block, struct sums *s,
-                                 const struct poly_touches *t, const struct row_of_points *row,
-                                 const struct springs *p, const bool friction, const bool viscous,
-                                 const bool ledger)
+/* Stiffness of four springs: A of df = -A d, columns a[j], for a shift d of b at the point. With
+ * the energy w kn delta^2 / 2 and the slope g of w, the normal force gives
+ * w kn n n - kn delta (n g + g n); a tangential spring that sticks w kt (1 - n n) + kt xi g; one
+ * that slips along t has no stiffness in that direction, and -mu kn w t n by its cap. q is what a
+ * change of weight does. */
+BRC_LANES_INLINE void spring_stiffness(brc_lanes a[3][3], brc_lanes q[3],
+                                       const struct poly_block *block,
+                                       const struct poly_touches *t, const brc_lanes xi[3],
+                                       brc_mask slips, const bool friction)
 {
-    brc_lanes arm[3], back[3], u[3], du[3], old = brc_lanes_at(p->weight);
-    brc_mask touches = positive(t->weight);
-    brc_lanes_put(p->weight, brc_lanes_pick(touches, t->weight, old));
-    s->fresh |= touches & ~positive(old);
-    sub(arm, t->x, row->xa);
-    sub(back, arm, row->x);
-    push_normal(s, t, row->kn, arm);
-    brc_lanes stiff = brc_lanes_where(touches, brc_lanes_all(block->stiff));
-    s->k[0] += stiff;
-    s->k[1] += stiff * brc_lanes_dot(arm, arm);
-    s->k[2] += stiff * brc_lanes_dot(back, back);
-    s->gap = brc_lanes_pick(touches, brc_lanes_min(s->gap, -t->delta), s->gap);
-    for (int k = 0; k < 3; k++)
-        u[k] = brc_lanes_dot(row->slope[k], arm);
-    add(u, u, row->slip);
-    if (friction) {
-        scale(du, u, brc_lanes_all(block->sim->dt));
-        push_shear(p, s, t, row, du, arm, brc_lanes_where(touches, old), ledger);
+    const brc_lanes kn = block->kn * t->weight, none = brc_lanes_all(0);
+    const brc_lanes kt = friction ? block->kt * t->weight : none;
+    brc_lanes push = block->kn * t->delta, slide[3] = {none, none, none};
+    brc_lanes size2 = brc_lanes_where(slips, brc_lanes_dot(xi, xi));
+    brc_lanes per = brc_lanes_where(positive(size2), 1 / size2);
+    for (int i = 0; i < 3; i++) {
+        q[i] = -push * t->n[i];
+        if (friction)
+            q[i] += block->kt * xi[i];
     }
-    if (viscous)
-        push_viscous(s, t, row, u, arm);
-}
-
-BRC_LANES_INLINE void row_of_segment(struct row_of_points *row, const struct poly_block *block,
-                                     const struct poly_segment *segment)
-{
-    const struct poly_row_group *g = &block->group[segment->row / BRC_LANES];
-    int lane = segment->row % BRC_LANES;
-    spread(row->xa, g->xa, lane);
-    spread(row->x, g->x, lane);
-    spread(row->slip, g->slip, lane);
-    spread(row->turn, g->turn, lane);
-    for (int k = 0; k < 3; k++)
-        spread(row->slope[k], g->slope[k], lane);
-    row->gn = brc_lanes_all(g->gn[lane]);
-    row->gt = brc_lanes_all(g->gt[lane]);
-    row->kn = block->kn;
-    row->kt = block->kt;
-    row->limit = poly_params_of(block->sim)->mu * block->kn / block->kt;
-}
-
-/* Sums over lanes to where a row keeps them. */
-BRC_LANES_INLINE void add_sums(double *to, const brc_lanes lanes[BRC_LANES])
-{
-    brc_lanes_put(to, brc_lanes_at(to) + brc_lanes_sums(lanes));
-}
-
-BRC_LANES_INLINE void add_row(struct poly_block *block, int32_t row, const struct sums *s,
-                              const bool friction, const bool viscous)
-{
-    const brc_lanes none = brc_lanes_all(0), *f = s->normal.f, *m = s->normal.m, *sf = s->shear.f,
-                    *sm = s->shear.m, *vf = s->viscous.f, *vm = s->viscous.m;
-    double *sum = block->sum[row];
-    add_sums(sum, (const brc_lanes[]){f[0], f[1], f[2], m[0]});
-    add_sums(sum + 4, (const brc_lanes[]){m[1], m[2], sf[0], sf[1]});
     if (friction)
-        add_sums(sum + 8, (const brc_lanes[]){sf[2], sm[0], sm[1], sm[2]});
-    add_sums(sum + POLY_SUM_K, (const brc_lanes[]){s->k[0], s->k[1], s->k[2], s->stored});
-    add_sums(sum + POLY_SUM_SLID, (const brc_lanes[]){s->slid, vf[0], vf[1], vf[2]});
+        scale(slide, xi, kt * per);
+    brc_lanes cap = block->limit * brc_lanes_sqrt(size2); /* mu kn w = kt w limit */
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3; i++) {
+            a[j][i] = (kn - kt) * t->n[i] * t->n[j] + q[i] * t->g[j] - push * t->g[i] * t->n[j];
+            if (friction)
+                a[j][i] -= slide[i] * (xi[j] + cap * t->n[j]);
+            if (i == j)
+                a[j][i] += kt;
+        }
+}
+
+/* Adds the stiffness of four points to the tangents of their rows. */
+BRC_LANES_INLINE void add_tangents(struct poly_block *block, const int32_t row[BRC_LANES],
+                                   const struct poly_touches *t, const brc_lanes xi[3],
+                                   brc_mask slips, const brc_lanes arm[3], const bool friction)
+{
+    brc_lanes a[3][3], q[3], k[36], force[3], moment[3];
+    spring_stiffness(a, q, block, t, xi, slips, friction);
+    for (int j = 0; j < 6; j++) {
+        const int l = (j + 1) % 3, m = (j + 2) % 3;
+        for (int i = 0; i < 3; i++)
+            force[i] = j < 3 ? a[j][i] : arm[l] * a[m][i] - arm[m] * a[l][i] + q[i] * t->c[j % 3];
+        brc_lanes_cross(moment, arm, force);
+        for (int i = 0; i < 3; i++) {
+            k[6 * i + j] = force[i];
+            k[6 * (i + 3) + j] = moment[i];
+        }
+    }
+    for (int n = 0; n < 36; n += BRC_LANES) {
+        brc_lanes_transpose(k + n);
+        for (int i = 0; i < BRC_LANES; i++) {
+            double *to = block->tangent[row[i]] + n;
+            brc_lanes_put(to, brc_lanes_at(to) + k[n + i]);
+        }
+    }
+    for (int i = 0; i < BRC_LANES; i++)
+        block->loosest[row[i]] = poly_least(block->loosest[row[i]], t->delta[i]);
+}
+
+/* Adds the lanes to the sums of their rows, one after the other: the points of a row are summed in
+ * the order of the lists. */
+BRC_LANES_INLINE void add_sums(struct poly_block *block, const int32_t row[BRC_LANES],
+                               brc_lanes *sums, int end)
+{
+    for (int k = 0; k < end; k += BRC_LANES) {
+        brc_lanes_transpose(sums + k);
+        for (int i = 0; i < BRC_LANES; i++) {
+            double *to = block->sum[row[i]] + k;
+            brc_lanes_put(to, brc_lanes_at(to) + sums[k + i]);
+        }
+    }
+}
+
+/* Forces of four points, which touch or are apart. Returns where they slip. */
+BRC_LANES_INLINE brc_mask push_points(const struct poly_block *block, struct sums *s,
+                                      const struct poly_touches *t, const struct frames *row,
+                                      struct springs *springs, const brc_lanes arm[3],
+                                      const bool condensed, const bool friction,
+                                      const bool viscous, const bool ledger)
+{
+    brc_lanes back[3], u[3], du[3], old = springs->weight;
+    brc_mask touches = positive(t->weight), slips = {0};
+    springs->weight = brc_lanes_pick(touches, t->weight, old);
+    sub(back, arm, row->x);
+    push_normal(s, t, block->kn, arm);
+    brc_lanes stiff = brc_lanes_where(touches, brc_lanes_all(block->stiff));
+    s->k[0] = stiff;
+    s->k[1] = stiff * brc_lanes_dot(arm, arm);
+    s->k[2] = stiff * brc_lanes_dot(back, back);
+    s->stored = s->slid = brc_lanes_all(0);
+    if (friction || viscous) {
+        for (int k = 0; k < 3; k++)
+            u[k] = brc_lanes_dot(row->along[k].slope, arm);
+        add(u, u, row->slip);
+    }
+    if (friction) {
+        scale(du, u, brc_lanes_all(condensed ? 1 : block->sim->dt));
+        slips =
+            push_shear(springs, s, t, row, block, du, arm, brc_lanes_where(touches, old), ledger);
+    } else {
+        clear((brc_lanes *)&s->shear, sizeof s->shear);
+    }
     if (viscous)
-        add_sums(sum + POLY_SUM_VISCOUS + 3, (const brc_lanes[]){vm[0], vm[1], vm[2], none});
-    block->nearest[row] =
-        poly_least(block->nearest[row],
-                   poly_least(poly_least(s->gap[0], s->gap[1]), poly_least(s->gap[2], s->gap[3])));
+        push_viscous(s, t, row, block, u, arm);
+    else
+        clear((brc_lanes *)&s->viscous, sizeof s->viscous);
+    return slips & touches;
 }
 
-/* Where some points of a segment do not touch. */
-BRC_LANES_INLINE bool has_apart(const struct poly_block *block, const struct poly_segment *segment)
+/* Points that begin to touch, and those that are apart. */
+BRC_LANES_INLINE void note_changes(struct poly_block *block, const struct poly_task *task,
+                                   int32_t n, const struct poly_touches *t, brc_lanes old)
 {
-    brc_mask apart = {0};
-    for (int32_t k = 0; k < segment->n; k += BRC_LANES)
-        apart |= brc_lanes_first(segment->n - k) &
-                 ~positive(block->touch[(segment->slot + k) / BRC_LANES].weight);
-    return brc_lanes_any(apart);
-}
-
-/* Four points that do not follow each other, from and to their columns. */
-struct together {
-    double xi[BRC_LANES][3], n[BRC_LANES][3], weight[BRC_LANES];
-};
-
-BRC_LANES_INLINE void put_together(struct together *to, const struct poly_points *points,
-                                   const int32_t *p, int32_t n)
-{
-    memset(to, 0, sizeof *to);
-    for (int32_t i = 0; i < n && i < BRC_LANES; i++) {
-        brc_copy(to->xi[i], points->xi[p[i]]);
-        brc_copy(to->n[i], points->n[p[i]]);
-        to->weight[i] = points->weight[p[i]];
+    struct poly_points *points = block->sim->pairs.point_columns;
+    brc_mask touches = positive(t->weight), taken = brc_lanes_first(n);
+    if (!brc_lanes_any(taken & (~touches | ~positive(old))))
+        return;
+    for (int32_t k = 0; k < BRC_LANES && k < n; k++) {
+        if (!touches[k]) {
+            block->open[task[k].row] = true;
+            block->apart[block->n_apart++] =
+                (struct poly_apart){task[k].row, task[k].point, poly_most(-t->delta[k], 0)};
+        } else if (points->active[task[k].point] == 0)
+            points->active[task[k].point] = 1;
     }
 }
 
-BRC_LANES_INLINE void put_back(const struct poly_points *points, const struct together *from,
-                               const int32_t *p, int32_t n)
-{
-    for (int32_t i = 0; i < n && i < BRC_LANES; i++) {
-        brc_copy(points->xi[p[i]], from->xi[i]);
-        brc_copy(points->n[p[i]], from->n[i]);
-        points->weight[p[i]] = from->weight[i];
-    }
-}
-
-/* Touches of slots k to k + 3 of a segment, into the sums. */
-BRC_LANES_INLINE void push_slots(const struct poly_block *block, struct sums *s,
-                                 const struct poly_segment *segment, int32_t k,
-                                 const struct row_of_points *row, const bool friction,
-                                 const bool viscous, const bool ledger)
+/* Forces of the four points from task on, of which the first n count. */
+BRC_LANES_INLINE void act(struct poly_block *block, const struct poly_task *task, int32_t n,
+                          const struct poly_touches *t, const bool condensed, const bool friction,
+                          const bool viscous, const bool ledger)
 {
     const struct poly_points *points = block->sim->pairs.point_columns;
-    const int32_t slot = segment->slot + k, p = segment->point + k;
-    struct poly_touches t = block->touch[slot / BRC_LANES];
-    brc_mask taken = brc_lanes_first(segment->n - k);
-    struct springs springs = {points->xi + p, points->n + p, points->weight + p};
-    struct together together;
-    t.delta = brc_lanes_where(taken, t.delta);
-    t.weight = brc_lanes_where(taken, t.weight);
-    if (!segment->follow) {
-        put_together(&together, points, block->point + slot, segment->n - k);
-        springs = (struct springs){together.xi, together.n, together.weight};
-    }
-    push_group(block, s, &t, row, &springs, friction, viscous, ledger);
-    if (!segment->follow)
-        put_back(points, &together, block->point + slot, segment->n - k);
-}
-
-BRC_LANES_INLINE void points_of_row(struct poly_block *block, struct poly_segment *segment,
-                                    const bool friction, const bool viscous, const bool ledger)
-{
-    struct row_of_points row;
+    const double *frame[BRC_LANES], *from[BRC_LANES];
+    int32_t row[BRC_LANES];
+    struct frames f;
+    struct springs springs;
     struct sums s;
-    if (has_apart(block, segment))
-        poly_drop_apart(block, segment);
-    row_of_segment(&row, block, segment);
-    clear((brc_lanes *)&s, sizeof s);
-    s.gap = brc_lanes_all(HUGE_VAL);
-    s.fresh = (brc_mask){0};
-    for (int32_t k = 0; k < segment->n; k += BRC_LANES)
-        push_slots(block, &s, segment, k, &row, friction, viscous, ledger);
-    segment->fresh = brc_lanes_any(s.fresh);
-    add_row(block, segment->row, &s, friction, viscous);
+    for (int k = 0; k < BRC_LANES; k++) {
+        row[k] = task[k].row;
+        frame[k] = block->frame[row[k]];
+        from[k] = points->spring[task[k].point];
+    }
+    gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
+    gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
+    brc_lanes arm[3], old = springs.weight;
+    sub(arm, t->x, f.xa);
+    brc_mask slips = push_points(block, &s, t, &f, &springs, arm, condensed, friction, viscous, ledger);
+    note_changes(block, task, n, t, old);
+    if (condensed)
+        add_tangents(block, row, t, springs.xi, slips, arm, friction);
+    brc_lanes *part = (brc_lanes *)&springs;
+    brc_lanes_transpose(part);
+    brc_lanes_transpose(part + BRC_LANES);
+    for (int k = 0; k < BRC_LANES && k < n; k++) {
+        brc_lanes_put(points->spring[task[k].point], part[k]);
+        brc_lanes_put(points->spring[task[k].point] + BRC_LANES, part[BRC_LANES + k]);
+        block->nearest[row[k]] =
+            poly_least(block->nearest[row[k]], t->weight[k] > 0 ? -t->delta[k] : HUGE_VAL);
+    }
+    s.none = brc_lanes_all(0);
+    add_sums(block, row, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
 }
 
-BRC_LANES_INLINE void points_kernel(struct poly_block *block, const bool friction,
-                                    const bool viscous, const bool ledger)
+/* Ends a list at a whole group: what is left over goes to a row that nobody reads. Returns its
+ * number of tasks; the list is empty then. */
+BRC_LANES_INLINE int32_t end_list(struct poly_block *block, int list)
 {
-    for (int32_t i = 0; i < block->n_segments; i++)
-        points_of_row(block, &block->segment[i], friction, viscous, ledger);
+    struct poly_task *task = block->task[list];
+    int32_t n = block->n_tasks[list];
+    for (int32_t k = n; k % BRC_LANES != 0; k++)
+        task[k] = (struct poly_task){POLY_ROWS, task[n - 1].point};
+    block->n_tasks[list] = 0;
+    return n;
+}
+
+BRC_LANES_INLINE void points_of_list(struct poly_block *block, const int list, const bool merged,
+                                     const bool condensed, const bool friction, const bool viscous,
+                                     const bool ledger)
+{
+    const struct poly_task *task = block->task[list];
+    int32_t n = end_list(block, list);
+    for (int32_t k = 0; k < n; k += BRC_LANES) {
+        struct poly_touches t;
+        if (list == POLY_KNOWN)
+            t = block->known[k / BRC_LANES];
+        else if (list == POLY_CROSSING)
+            touch_edges(&t, block, task + k, merged);
+        else
+            touch_vertices(&t, block, task + k, list == POLY_FLAT);
+        act(block, task + k, n - k, &t, condensed, friction, viscous, ledger);
+    }
+}
+
+BRC_LANES_INLINE void points_kernel(struct poly_block *block, const bool merged,
+                                    const bool condensed, const bool friction, const bool viscous,
+                                    const bool ledger)
+{
+    points_of_list(block, POLY_FLAT, merged, condensed, friction, viscous, ledger);
+    if (merged)
+        points_of_list(block, POLY_SHARP, merged, condensed, friction, viscous, ledger);
+    points_of_list(block, POLY_CROSSING, merged, condensed, friction, viscous, ledger);
+    points_of_list(block, POLY_KNOWN, merged, condensed, friction, viscous, ledger);
 }
 
 /* --- sums of rows ----------------------------------------------------------------------------- */
@@ -341,7 +382,7 @@ BRC_LANES_INLINE void works_of_group(struct poly_block *block, struct poly_row_g
 
 /* Forces and moments of the rows of a group, and what else they need. */
 BRC_LANES_INLINE void finish_group(struct poly_block *block, int32_t group, const bool ledger,
-                                   const bool viscous)
+                                   const bool viscous, const bool condensed)
 {
     struct brc_contacts *c = &block->sim->pairs;
     struct poly_row_group *g = &block->group[group];
@@ -372,14 +413,21 @@ BRC_LANES_INLINE void finish_group(struct poly_block *block, int32_t group, cons
     g->gap = brc_lanes_min(g->gap, brc_lanes_at(block->nearest + BRC_LANES * group));
     g->stored = s[POLY_SUM_STORED];
     g->slid = s[POLY_SUM_SLID];
+    for (int k = 0; k < 3 && condensed; k++) {
+        normal.f[k] += s[POLY_SUM_SHEAR + k];
+        normal.m[k] += s[POLY_SUM_SHEAR + 3 + k];
+    }
     if (ledger)
         works_of_group(block, g, row, &normal, &sticky, viscous);
+    if (condensed)
+        g->work_normal -= g->slid;
 }
 
-BRC_LANES_INLINE void finish_kernel(struct poly_block *block, const bool ledger, const bool viscous)
+BRC_LANES_INLINE void finish_kernel(struct poly_block *block, const bool ledger, const bool viscous,
+                                    const bool condensed)
 {
     for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++)
-        finish_group(block, group, ledger, viscous);
+        finish_group(block, group, ledger, viscous, condensed);
 }
 
 /* --- choice ----------------------------------------------------------------------------------- */
@@ -389,20 +437,29 @@ BRC_LANES_INLINE void finish_kernel(struct poly_block *block, const bool ledger,
     {                                                                   \
         call;                                                           \
     }
-KERNEL(motion, motion_kernel(block, false))
-KERNEL(motion_torsion, motion_kernel(block, true))
-KERNEL(touch, touch_kernel(block, false))
-KERNEL(touch_merged, touch_kernel(block, true))
-KERNEL(finish, finish_kernel(block, false, false))
-KERNEL(finish_sticky, finish_kernel(block, false, true))
-KERNEL(finish_ledger, finish_kernel(block, true, false))
-KERNEL(finish_viscous, finish_kernel(block, true, true))
-KERNEL(points_000, points_kernel(block, false, false, false))
-KERNEL(points_010, points_kernel(block, false, true, false))
-KERNEL(points_100, points_kernel(block, true, false, false))
-KERNEL(points_101, points_kernel(block, true, false, true))
-KERNEL(points_110, points_kernel(block, true, true, false))
-KERNEL(points_111, points_kernel(block, true, true, true))
+KERNEL(motion, motion_kernel(block, false, false))
+KERNEL(motion_torsion, motion_kernel(block, true, false))
+KERNEL(motion_condensed, motion_kernel(block, false, true))
+KERNEL(motion_torsion_condensed, motion_kernel(block, true, true))
+KERNEL(finish, finish_kernel(block, false, false, false))
+KERNEL(finish_sticky, finish_kernel(block, false, true, false))
+KERNEL(finish_ledger, finish_kernel(block, true, false, false))
+KERNEL(finish_viscous, finish_kernel(block, true, true, false))
+KERNEL(finish_condensed, finish_kernel(block, false, false, true))
+KERNEL(finish_condensed_ledger, finish_kernel(block, true, false, true))
+#define POINTS(name, ...)                                                 \
+    KERNEL(points_##name, points_kernel(block, false, false, __VA_ARGS__)) \
+    KERNEL(merged_##name, points_kernel(block, true, false, __VA_ARGS__))
+POINTS(plain, false, false, false)
+POINTS(viscous, false, true, false)
+POINTS(rub, true, false, false)
+POINTS(rub_ledger, true, false, true)
+POINTS(rub_viscous, true, true, false)
+POINTS(rub_viscous_ledger, true, true, true)
+KERNEL(condensed_plain, points_kernel(block, true, true, false, false, false))
+KERNEL(condensed_rub, points_kernel(block, true, true, true, false, false))
+KERNEL(condensed_rub_ledger, points_kernel(block, true, true, true, false, true))
+#undef POINTS
 #undef KERNEL
 
 __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_list *l,
@@ -412,20 +469,35 @@ __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_li
     return list_features(ctx, l, p, rule, skin, allowance);
 }
 
+static struct poly_kernels choose_condensed(const struct poly_params *p, bool friction, bool ledger)
+{
+    static poly_kernel *const points[2][2] = {{condensed_plain, condensed_plain},
+                                              {condensed_rub, condensed_rub_ledger}};
+    return (struct poly_kernels){.list = list,
+                                 .motion = BRC_OPTION(p->torsion) ? motion_torsion_condensed
+                                                                  : motion_condensed,
+                                 .points = points[friction][ledger],
+                                 .finish = ledger ? finish_condensed_ledger : finish_condensed};
+}
+
 static struct poly_kernels choose_kernels(const struct brc_sim *sim)
 {
-    static poly_kernel *const points[2][2][2] = {
-        {{points_000, points_000}, {points_010, points_010}},
-        {{points_100, points_101}, {points_110, points_111}}};
+    static poly_kernel *const points[2][2][2][2] = {
+        {{{points_plain, points_plain}, {points_viscous, points_viscous}},
+         {{points_rub, points_rub_ledger}, {points_rub_viscous, points_rub_viscous_ledger}}},
+        {{{merged_plain, merged_plain}, {merged_viscous, merged_viscous}},
+         {{merged_rub, merged_rub_ledger}, {merged_rub_viscous, merged_rub_viscous_ledger}}}};
     static poly_kernel *const finishes[2][2] = {{finish, finish_ledger},
                                                 {finish_sticky, finish_viscous}};
     const struct poly_params *p = poly_params_of(sim);
     bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
+    bool merged = p->features == POLY_MERGED;
     bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
+    if (poly_is_condensed(sim))
+        return choose_condensed(p, friction, ledger);
     return (struct poly_kernels){.list = list,
                                  .motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
-                                 .touch = p->features == POLY_MERGED ? touch_merged : touch,
-                                 .points = points[friction][viscous][ledger],
+                                 .points = points[merged][friction][viscous][ledger],
                                  .finish = finishes[viscous][ledger]};
 }
 

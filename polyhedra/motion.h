@@ -29,26 +29,50 @@ BRC_LANES_INLINE void add_double_cross(brc_lanes r[3], brc_lanes s, const brc_la
     axpy(r, s, c);
 }
 
+/* What points want of a row. */
+struct frames {
+    brc_lanes xa[3], gn, x[3], gt;
+    /* b moves at slip + slope . arm relative to a, arm from a; turn is a quarter of the sum of both
+     * turns in the step */
+    brc_lanes slip[3], none;
+    struct {
+        brc_lanes slope[3], turn;
+    } along[3];
+};
+
 /* Velocity of b relative to a with arms at the middle of the step, so that a pair that turns as one
  * body does not slip but for the third order of the step's angle: for an arm r from a,
  * dv + (wb - h wb wb)(r - x) - (wa - h wa wa) r, with cross products for products and h = dt / 2.
  */
-BRC_LANES_INLINE void slip_of_row(struct poly_row_group *g, double dt)
+BRC_LANES_INLINE void slip_of_row(struct frames *f, const struct poly_row_group *g, double dt)
 {
     const brc_lanes *wa = g->wa, *wb = g->wb, h = brc_lanes_all(0.5 * dt);
     brc_lanes dw[3], c[3];
     brc_lanes_cross(c, wb, g->x);
-    sub(g->slip, g->dv, c);
-    add_double_cross(g->slip, h, wb, g->x);
+    sub(f->slip, g->dv, c);
+    add_double_cross(f->slip, h, wb, g->x);
     sub(dw, wb, wa);
     brc_lanes widen = h * (brc_lanes_dot(wb, wb) - brc_lanes_dot(wa, wa));
     for (int i = 0; i < 3; i++) {
+        brc_lanes *slope = f->along[i].slope;
         for (int j = 0; j < 3; j++)
-            g->slope[i][j] = -h * (wb[i] * wb[j] - wa[i] * wa[j]);
-        g->slope[i][i] += widen;
-        g->slope[i][(i + 1) % 3] -= dw[(i + 2) % 3];
-        g->slope[i][(i + 2) % 3] += dw[(i + 1) % 3];
-        g->turn[i] = brc_lanes_all(0.25 * dt) * (wa[i] + wb[i]);
+            slope[j] = -h * (wb[i] * wb[j] - wa[i] * wa[j]);
+        slope[i] += widen;
+        slope[(i + 1) % 3] -= dw[(i + 2) % 3];
+        slope[(i + 2) % 3] += dw[(i + 1) % 3];
+        f->along[i].turn = brc_lanes_all(0.25 * dt) * (wa[i] + wb[i]);
+    }
+}
+
+/* Lane i to the frame of row i. */
+BRC_LANES_INLINE void put_frames(double (*to)[POLY_FRAME], struct frames *f)
+{
+    brc_lanes *part = (brc_lanes *)f;
+    f->none = brc_lanes_all(0);
+    for (int k = 0; k < POLY_FRAME; k += BRC_LANES) {
+        brc_lanes_transpose(part + k);
+        for (int i = 0; i < BRC_LANES; i++)
+            brc_lanes_put(to[i] + k, part[k + i]);
     }
 }
 
@@ -67,23 +91,52 @@ BRC_LANES_INLINE brc_lanes relative_path(const struct poly_row_group *g, const b
     return 1.1 * dt * speed + dt * dt * brc_lanes_dot(g->wa, g->wa) * (reach_a + 2 * reach_b);
 }
 
-BRC_LANES_INLINE void motion_of_group(struct poly_block *block, struct poly_row_group *g,
-                                      const struct numbers *i)
+BRC_LANES_INLINE void viscosities(struct frames *f, const struct poly_block *block,
+                                  const struct numbers *i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    brc_lanes ma = gather(block->sim->bodies.true_mass, i->a);
+    brc_lanes mb = gather(block->sim->bodies.true_mass, i->b);
+    brc_lanes effective = ma * mb / (ma + mb);
+    f->gn = p->gn * effective;
+    f->gt = p->gt * effective;
+}
+
+BRC_LANES_INLINE void motion_of_group(const struct poly_block *block, struct poly_row_group *g,
+                                      struct frames *f, const struct numbers *i)
 {
     const struct brc_bodies *bodies = &block->sim->bodies;
-    brc_lanes xb[3], va[3], vb[3];
-    brc_lanes_gather3(g->xa, bodies->x, i->a);
+    brc_lanes xa[3], xb[3], va[3], vb[3];
+    brc_lanes_gather3(xa, bodies->x, i->a);
     brc_lanes_gather3(xb, bodies->x, i->b);
     brc_lanes_gather3(va, bodies->v, i->a);
     brc_lanes_gather3(vb, bodies->v, i->b);
     brc_lanes_gather3(g->wa, bodies->w, i->a);
     brc_lanes_gather3(g->wb, bodies->w, i->b);
-    sub(g->x, xb, g->xa);
+    sub(g->x, xb, xa);
     sub(g->dv, vb, va);
-    slip_of_row(g, block->sim->dt);
+    set(f->xa, xa[0], xa[1], xa[2]);
+    set(f->x, g->x[0], g->x[1], g->x[2]);
+    slip_of_row(f, g, block->sim->dt);
+    viscosities(f, block, i);
     g->path = relative_path(g, gather(bodies->reach, i->a),
                             gather(bodies->reach, i->b) + block->rest, block->sim->dt);
 }
+
+/* Values first and on of what each of four rows has in its column, as fours. */
+BRC_LANES_INLINE void gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int n)
+{
+    for (int k = 0; k < n; k += BRC_LANES) {
+        const double *const p[BRC_LANES] = {from[0] + k, from[1] + k, from[2] + k, from[3] + k};
+        brc_lanes_gather4(r + k, p);
+    }
+}
+
+/* Four bonds, as POLY_BOND has them. */
+struct halves {
+    brc_lanes ca[3], area, cb[3], length, na[3], none_na, nb[3], none_nb, ta[3], none_ta, tb[3],
+        none_tb;
+};
 
 /* Constants of the bonds of four rows, as poly_bond_of; zero stiffness where there is none. */
 struct bonds {
@@ -92,15 +145,14 @@ struct bonds {
 };
 
 BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_block *block,
-                                     const struct numbers *i)
+                                     const struct halves *halves, const struct numbers *i)
 {
     const struct poly_params *p = poly_params_of(block->sim);
     const struct brc_contacts *c = &block->sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
     const uint8_t status[BRC_LANES] = {c->status[i->row[0]], c->status[i->row[1]],
                                        c->status[i->row[2]], c->status[i->row[3]]};
     bonds->intact = brc_lanes_equal(status, BRC_INTACT);
-    brc_lanes area = gather(rows->area, i->row), length = gather(rows->length, i->row);
+    brc_lanes area = halves->area, length = halves->length;
     brc_lanes stiff = brc_lanes_where(bonds->intact, area / length);
     brc_lanes arm = p->torsion_length > 0 ? brc_lanes_all(p->torsion_length) : length;
     bonds->kn = p->bn * stiff;
@@ -109,22 +161,19 @@ BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_bloc
     bonds->length = length;
 }
 
-/* Four vectors of body frames in space; rotation matrices r, column of body vectors. */
-BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[3][3], double (*column)[3],
-                                    const int32_t row[BRC_LANES])
+/* Four vectors of body frames in space. */
+BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
 {
-    brc_lanes v[3];
-    brc_lanes_gather3(v, column, row);
-    set(out, brc_lanes_dot(r[0], v), brc_lanes_dot(r[1], v), brc_lanes_dot(r[2], v));
+    set(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
 }
 
-BRC_LANES_INLINE void gather_turn(brc_lanes r[3][3], double (*turn)[3][3],
-                                  const int32_t i[BRC_LANES])
+/* Rotation matrices of four bodies. */
+BRC_LANES_INLINE void gather_turn(brc_lanes r[9], double (*turn)[3][3], const int32_t i[BRC_LANES])
 {
-    for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-            r[k][l] =
-                (brc_lanes){turn[i[0]][k][l], turn[i[1]][k][l], turn[i[2]][k][l], turn[i[3]][k][l]};
+    const double *const from[BRC_LANES] = {turn[i[0]][0], turn[i[1]][0], turn[i[2]][0],
+                                           turn[i[3]][0]};
+    gather_fours(r, from, 8);
+    r[8] = (brc_lanes){from[0][8], from[1][8], from[2][8], from[3][8]};
 }
 
 /* poly_twist for four bonds. */
@@ -136,8 +185,11 @@ BRC_LANES_INLINE brc_lanes twist(const brc_lanes n[3], const brc_lanes ta[3], co
     brc_lanes x = brc_lanes_dot(ta, tb) - brc_lanes_dot(ta, n) * brc_lanes_dot(tb, n);
     brc_lanes y = brc_lanes_where(intact, brc_lanes_dot(c, n));
     x = brc_lanes_pick(intact, x, brc_lanes_all(1));
-    brc_lanes t = y / x, angle = t * (1 - t * t * (1.0 / 3 - t * t / 5));
-    brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(1e-3));
+    /* the series of the arc tangent: what it leaves out is below t^10 / 11 */
+    brc_lanes t = y / x, t2 = t * t;
+    brc_lanes angle =
+        t * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 * (1.0 / 7 - t2 * (1.0 / 9)))));
+    brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(0.03));
     if (brc_lanes_any(~small))
         for (int k = 0; k < BRC_LANES; k++)
             angle[k] = small[k] ? angle[k] : atan2(y[k], x[k]);
@@ -179,41 +231,34 @@ BRC_LANES_INLINE void bond_of_group(struct poly_block *block, struct poly_row_gr
                                     const struct numbers *i, const bool torsion)
 {
     const struct poly_rows *rows = block->sim->pairs.model_columns;
-    brc_lanes ra[3][3], rb[3][3], pa[3], pb[3], na[3], nb[3], ta[3], tb[3], n[3];
+    const double *const from[BRC_LANES] = {rows->bond[i->row[0]], rows->bond[i->row[1]],
+                                           rows->bond[i->row[2]], rows->bond[i->row[3]]};
+    brc_lanes ra[9], rb[9], pa[3], pb[3], na[3], nb[3], ta[3], tb[3], n[3];
+    struct halves halves;
     struct bonds bonds;
-    bonds_of_group(&bonds, block, i);
+    gather_fours((brc_lanes *)&halves, from, torsion ? POLY_BOND : POLY_BOND_TA);
+    bonds_of_group(&bonds, block, &halves, i);
     gather_turn(ra, block->st->turn, i->a);
     gather_turn(rb, block->st->turn, i->b);
     /* material points relative to the centre of a */
-    body_to_space(pa, ra, rows->ca, i->row);
-    body_to_space(pb, rb, rows->cb, i->row);
+    body_to_space(pa, ra, halves.ca);
+    body_to_space(pb, rb, halves.cb);
     add(pb, pb, g->x);
-    body_to_space(na, ra, rows->na, i->row);
-    body_to_space(nb, rb, rows->nb, i->row);
+    body_to_space(na, ra, halves.na);
+    body_to_space(nb, rb, halves.nb);
     sub(n, na, nb);
     scale(n, n, 1 / brc_lanes_sqrt(brc_lanes_dot(n, n)));
     mask(n, bonds.intact, n);
     brc_lanes twisted = brc_lanes_all(0);
     if (torsion) {
-        body_to_space(ta, ra, rows->ta, i->row);
-        body_to_space(tb, rb, rows->tb, i->row);
+        body_to_space(ta, ra, halves.ta);
+        body_to_space(tb, rb, halves.tb);
         twisted = twist(n, ta, tb, bonds.intact);
     } else {
         bonds.ktheta = brc_lanes_all(0);
     }
     bond_law(g, &bonds, poly_params_of(block->sim), pa, pb, n, twisted);
     g->broken = brc_lanes_where(bonds.intact, g->broken);
-}
-
-BRC_LANES_INLINE void viscosities(struct poly_block *block, struct poly_row_group *g,
-                                  const struct numbers *i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    brc_lanes ma = gather(block->sim->bodies.true_mass, i->a);
-    brc_lanes mb = gather(block->sim->bodies.true_mass, i->b);
-    brc_lanes effective = ma * mb / (ma + mb);
-    g->gn = p->gn * effective;
-    g->gt = p->gt * effective;
 }
 
 /* What rows have used of their room; calm rows have nothing to decide in this step. */
@@ -236,17 +281,104 @@ BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_g
     }
 }
 
-BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion)
+/* --- condensed rows --------------------------------------------------------------------------- */
+
+/* Motion of four rows since their springs were computed, as POLY_SHIFT has it. */
+struct shifts {
+    brc_lanes d[3], path, turn[3], end, both[3], none;
+};
+
+/* Adds the motion of the step, and makes the frames those of the motion since then: slip and slope
+ * are displacements. */
+BRC_LANES_INLINE void add_shift(struct shifts *s, struct frames *f, const struct poly_row_group *g,
+                                double dt)
+{
+    const brc_lanes none = brc_lanes_all(0), *w = s->turn;
+    for (int k = 0; k < 3; k++) {
+        s->d[k] += dt * f->slip[k];
+        s->turn[k] += dt * (g->wb[k] - g->wa[k]);
+        s->both[k] += f->along[k].turn;
+        f->slip[k] = s->d[k];
+        f->along[k].turn = s->both[k];
+    }
+    s->path += g->path;
+    set(f->along[0].slope, none, -w[2], w[1]);
+    set(f->along[1].slope, w[2], none, -w[0]);
+    set(f->along[2].slope, -w[1], w[0], none);
+}
+
+/* Force and moment of the springs of four rows: what they were, turned with the pair, less the
+ * tangent times the motion. */
+BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *rows,
+                                     const struct shifts *s, const int32_t row[BRC_LANES])
+{
+    brc_lanes held[6], turned[6], both[3], slope[36], motion[6];
+    const double *from[BRC_LANES];
+    brc_lanes_gather6(held, rows->held, row);
+    scale(both, s->both, brc_lanes_all(2));
+    brc_lanes_cross(turned, both, held);
+    brc_lanes_cross(turned + 3, both, held + 3);
+    set(motion, s->d[0], s->d[1], s->d[2]);
+    set(motion + 3, s->turn[0], s->turn[1], s->turn[2]);
+    for (int k = 0; k < 6; k++)
+        f[k] = held[k] + turned[k];
+    for (int i = 0; i < BRC_LANES; i++)
+        from[i] = rows->tangent[row[i]];
+    gather_fours(slope, from, 36);
+    for (int k = 0; k < 36; k++)
+        f[k / 6] -= slope[k] * motion[k % 6];
+    f[6] = f[7] = brc_lanes_all(0);
+}
+
+/* Rows that stay condensed in this step have their forces from the tangent; the points of the
+ * others are computed with the motion since they were computed last. */
+BRC_LANES_INLINE void hold_group(struct poly_block *block, int32_t group, struct frames *f,
+                                 const struct numbers *i)
+{
+    const struct poly_row_group *g = &block->group[group];
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    const double *from[BRC_LANES];
+    struct shifts s;
+    brc_lanes force[8], *part = (brc_lanes *)&s;
+    for (int k = 0; k < BRC_LANES; k++)
+        from[k] = rows->shift[i->row[k]];
+    gather_fours(part, from, POLY_SHIFT);
+    add_shift(&s, f, g, block->sim->dt);
+    brc_mask held = brc_lanes_less(s.path, s.end);
+    if (poly_params_of(block->sim)->breakable)
+        held &= ~brc_lanes_less(brc_lanes_all(1), g->broken);
+    clear(force, sizeof force);
+    if (brc_lanes_any(held))
+        tangent_forces(force, rows, &s, i->row);
+    for (int k = 0; k < POLY_SHIFT; k += BRC_LANES)
+        brc_lanes_transpose(part + k);
+    brc_lanes_transpose(force);
+    brc_lanes_transpose(force + BRC_LANES);
+    for (int k = 0, n = BRC_LANES * group; k < BRC_LANES && n < block->n_rows; k++, n++) {
+        for (int j = 0; j < POLY_SHIFT; j += BRC_LANES)
+            brc_lanes_put(rows->shift[i->row[k]] + j, part[j + k]);
+        block->held[n] = held[k];
+        if (!held[k])
+            continue;
+        brc_lanes_put(block->sum[n], force[k]);
+        brc_lanes_put(block->sum[n] + BRC_LANES, force[BRC_LANES + k]);
+    }
+}
+
+BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion,
+                                    const bool condensed)
 {
     const struct brc_contacts *c = &block->sim->pairs;
     clear((brc_lanes *)block->sum, sizeof block->sum);
+    if (condensed)
+        clear((brc_lanes *)block->tangent, sizeof block->tangent);
     for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++) {
         struct poly_row_group *g = &block->group[group];
         struct numbers i;
+        struct frames f;
         bool has_bond = false;
         numbers_of(&i, block, group);
-        motion_of_group(block, g, &i);
-        viscosities(block, g, &i);
+        motion_of_group(block, g, &f, &i);
         for (int k = 0; k < BRC_LANES; k++)
             has_bond |= c->status[i.row[k]] == BRC_INTACT;
         g->k[0] = g->k[1] = g->k[2] = g->broken = brc_lanes_all(0);
@@ -254,6 +386,9 @@ BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion
         if (has_bond)
             bond_of_group(block, g, &i, torsion);
         rooms_of_group(block, g, group);
+        if (condensed)
+            hold_group(block, group, &f, &i);
+        put_frames(block->frame + BRC_LANES * group, &f);
     }
 }
 

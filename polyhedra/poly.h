@@ -41,10 +41,16 @@
          "length that makes eq 14 a torque; 0: the strain length")                                \
     CHOICE(features, "closed|strict|merged", "merged",                                            \
            "feature pairs that are springs: all within reach, eq 1; feet strictly inside; each "  \
-           "physical contact once, with a continuous force")
+           "physical contact once, with a continuous force")                                      \
+    CHOICE(intact, "literal|condensed", "literal",                                                \
+           "springs of bonded pairs: each at each step; or by their sum, linear in the motion "   \
+           "since all were computed")                                                             \
+    REAL(intact_path, "1", "0.001", "(0, 0.05]",                                                  \
+         "condensed: relative path, in radii R, until all are computed anew")
 
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
 enum poly_area { POLY_AREA_ERODED, POLY_AREA_FACET };
+enum poly_intact { POLY_LITERAL, POLY_CONDENSED };
 
 struct poly_params {
     BRC_PARAM_MEMBERS(POLY_PARAMS)
@@ -58,21 +64,29 @@ struct poly_params {
     SCALAR(int32_t, awake, BRC_STATE, "1", "points that are looked at; the others sleep")       \
     SCALAR(double, calm, BRC_SCRATCH, "m", "items stay right while there is more room than so") \
     SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")      \
-    VECTOR(double, ca, 3, BRC_STATE, "m", "material point of the bond in the frame of a")       \
-    VECTOR(double, cb, 3, BRC_STATE, "m", "the same in the frame of b")                         \
-    VECTOR(double, na, 3, BRC_STATE, "1", "normal of the face of a, outward, in its frame")     \
-    VECTOR(double, nb, 3, BRC_STATE, "1", "normal of the face of b, outward, in its frame")     \
-    VECTOR(double, ta, 3, BRC_STATE, "1", "tangent of the bond in the frame of a")              \
-    VECTOR(double, tb, 3, BRC_STATE, "1", "the same direction at the start, in the frame of b") \
-    SCALAR(double, area, BRC_STATE, "m2", "area of the bond")                                   \
-    SCALAR(double, length, BRC_STATE, "m", "strain length of the bond")                         \
+    VECTOR(double, bond, POLY_BOND, BRC_STATE, "m, 1, m2", "bond, in both frames (POLY_BOND)")  \
+    VECTOR(double, shift, POLY_SHIFT, BRC_STATE, "m, 1",                                        \
+           "condensed: motion since the springs were computed (POLY_SHIFT)")                    \
+    VECTOR(double, held, 6, BRC_STATE, "N, N m", "condensed: force and moment about a then")    \
+    VECTOR(double, tangent, 36, BRC_STATE, "N m-1, N, N m", "condensed: their slope by motion") \
     VECTOR(double, bond_old, 6, BRC_STATE, "N, N m", "bond force on b, its moment about a")     \
-    VECTOR(double, normal_old, 6, BRC_STATE, "N, N m", "the same of the normal springs")        \
+    VECTOR(double, normal_old, 6, BRC_STATE, "N, N m",                                          \
+           "the same of the normal springs; condensed: of all springs")                         \
     VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m", "the same of the viscous forces")
 
 struct poly_rows {
     POLY_ROW_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
+
+static inline double *poly_bond_area(const struct poly_rows *rows, size_t row)
+{
+    return rows->bond[row] + POLY_BOND_AREA;
+}
+
+static inline double *poly_bond_length(const struct poly_rows *rows, size_t row)
+{
+    return rows->bond[row] + POLY_BOND_LENGTH;
+}
 
 /* Points: feature pairs near enough to touch before the row is listed anew. */
 #define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                      \
@@ -87,13 +101,27 @@ struct poly_rows {
     SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room") \
     SCALAR(double, hold, BRC_STATE, "m", "the place is sure while the row has more room")      \
     VECTOR(int32_t, item, POLY_ITEM, BRC_SCRATCH, "1", "what the touch is computed from")      \
-    SCALAR(double, weight, BRC_STATE, "1", "weight of the spring")                             \
-    VECTOR(double, n, 3, BRC_STATE, "1", "normal from a to b")                                 \
-    VECTOR(double, xi, 3, BRC_STATE, "m", "tangential displacement, eq 9")
+    VECTOR(double, spring, POLY_SPRING, BRC_STATE, "m, 1",                                     \
+           "tangential displacement xi, eq 9; weight; normal from a to b; 0")
 
 struct poly_points {
     POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
+
+static inline double *poly_xi(const struct poly_points *points, size_t p)
+{
+    return points->spring[p] + POLY_XI;
+}
+
+static inline double *poly_normal(const struct poly_points *points, size_t p)
+{
+    return points->spring[p] + POLY_NORMAL;
+}
+
+static inline double *poly_weight(const struct poly_points *points, size_t p)
+{
+    return points->spring[p] + POLY_WEIGHT;
+}
 
 static inline struct poly_feature poly_point(const struct poly_points *points, size_t p)
 {
@@ -121,6 +149,11 @@ static inline const struct poly_params *poly_params_of(const struct brc_sim *sim
     return sim->params;
 }
 
+static inline bool poly_is_condensed(const struct brc_sim *sim)
+{
+    return BRC_OPTION(poly_params_of(sim)->intact == POLY_CONDENSED);
+}
+
 /* Smaller one of the radii of two cores about their centres. */
 static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32_t b)
 {
@@ -143,11 +176,9 @@ void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
 /* A point that is awake and does not touch sleeps until its row has no more than `sleep` room. */
 void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
 
-/* points.c: lists the points of row i of the block that may touch; computes all that is listed;
- * takes the slots of a segment out that do not touch. */
+/* points.c: lists the points of row i of the block that may touch; computes all that is listed. */
 void poly_list_points(struct poly_block *block, int32_t i);
 void poly_work_off(struct poly_block *block);
-void poly_drop_apart(struct poly_block *block, struct poly_segment *segment);
 
 /* forces.c, walls.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);

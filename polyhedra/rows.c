@@ -36,13 +36,13 @@ static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, si
     brc_frame(t, unused, n);
     brc_scale(back, n, -1);
     brc_sub(arm, at, b->x[ia]);
-    to_frame(rows->ca[row], b->q[ia], arm);
-    to_frame(rows->na[row], b->q[ia], n);
-    to_frame(rows->ta[row], b->q[ia], t);
+    to_frame(rows->bond[row] + POLY_BOND_CA, b->q[ia], arm);
+    to_frame(rows->bond[row] + POLY_BOND_NA, b->q[ia], n);
+    to_frame(rows->bond[row] + POLY_BOND_TA, b->q[ia], t);
     brc_sub(arm, at, b->x[ib]);
-    to_frame(rows->cb[row], b->q[ib], arm);
-    to_frame(rows->nb[row], b->q[ib], back);
-    to_frame(rows->tb[row], b->q[ib], t);
+    to_frame(rows->bond[row] + POLY_BOND_CB, b->q[ib], arm);
+    to_frame(rows->bond[row] + POLY_BOND_NB, b->q[ib], back);
+    to_frame(rows->bond[row] + POLY_BOND_TB, b->q[ib], t);
 }
 
 /* Bond of two grains over a facet. */
@@ -58,17 +58,17 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, si
     brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
     c->facet[row] = (int32_t)facet;
     st->n_removed += ea == 0 || eb == 0;
-    rows->area[row] = f->area[facet];
+    *poly_bond_area(rows, row) = f->area[facet];
     if (params->area == POLY_AREA_ERODED)
-        rows->area[row] = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
-    rows->length[row] = params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
+        *poly_bond_area(rows, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+    *poly_bond_length(rows, row) = params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
     fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
-    if (!params->bonds || rows->area[row] == 0)
+    if (!params->bonds || *poly_bond_area(rows, row) == 0)
         return;
     c->status[row] = BRC_INTACT;
     st->n_bonds++;
-    st->mean_area += rows->area[row];
-    st->mean_length += rows->length[row];
+    st->mean_area += *poly_bond_area(rows, row);
+    st->mean_length += *poly_bond_length(rows, row);
 }
 
 static bool on_platen(const struct brc_sim *sim, const struct brc_platen *p, size_t facet)
@@ -93,13 +93,13 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     brc_sub(d, sim->bodies.x[c->a[row]], sim->bodies.x[p->body]);
     brc_scale(n, p->n, -1);
     c->facet[row] = (int32_t)facet;
-    rows->area[row] = params->area == POLY_AREA_FACET
+    *poly_bond_area(rows, row) = params->area == POLY_AREA_FACET
                           ? f->area[facet]
                           : eroded_area(&st->shapes, (size_t)c->a[row], (int32_t)facet);
-    rows->length[row] =
+    *poly_bond_length(rows, row) =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : brc_dot(d, p->n);
     fix_bond(sim, c, row, f->centroid[facet], n);
-    if (p->grip != BRC_GRIP_NONE && rows->area[row] > 0)
+    if (p->grip != BRC_GRIP_NONE && *poly_bond_area(rows, row) > 0)
         c->status[row] = BRC_INTACT;
 }
 
@@ -173,7 +173,7 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
     if (c->status[row] == BRC_INTACT)
         return true;
     for (int32_t k = 0; k < c->np[row]; k++)
-        if (points->weight[(size_t)c->p0[row] + (size_t)k] > 0)
+        if (*poly_weight(points, (size_t)c->p0[row] + (size_t)k) > 0)
             return true;
     return false;
 }
@@ -236,9 +236,7 @@ static void copy_point(const struct poly_points *points, size_t to, size_t from)
     memcpy(points->item[to], points->item[from], sizeof points->item[from]);
     points->sleep[to] = points->sleep[from];
     points->hold[to] = points->hold[from];
-    points->weight[to] = points->weight[from];
-    memcpy(points->n[to], points->n[from], sizeof points->n[from]);
-    memcpy(points->xi[to], points->xi[from], sizeof points->xi[from]);
+    memcpy(points->spring[to], points->spring[from], sizeof points->spring[from]);
 }
 
 /* Moves the state of points that act to the front, in order; returns how many. */
@@ -246,7 +244,7 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
 {
     size_t kept = first;
     for (size_t p = first; p < first + n; p++) {
-        if (points->weight[p] <= 0)
+        if (*poly_weight(points, p) <= 0)
             continue;
         if (kept < p)
             copy_point(points, kept, p);
@@ -266,9 +264,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     points->hold[p] = hold;
     points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
     points->active[p] = 0;
-    points->weight[p] = 0;
-    brc_set(points->n[p], 0, 0, 0);
-    brc_set(points->xi[p], 0, 0, 0);
+    memset(points->spring[p], 0, sizeof points->spring[p]);
 }
 
 /* Order of the points that are awake, so that sums over them do not depend on how they came there.

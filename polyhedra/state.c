@@ -36,7 +36,7 @@ struct store {
 static void add_point(const struct store *s, const struct poly_touch *t, size_t p)
 {
     s->stored[1] += 0.5 * s->kn * t->weight * t->delta * t->delta;
-    s->stored[2] += 0.5 * s->kt * t->weight * brc_norm2(s->points->xi[p]);
+    s->stored[2] += 0.5 * s->kt * t->weight * brc_norm2(poly_xi(s->points, p));
 }
 
 static void add_active(void *user, const struct poly_active *active)

@@ -205,13 +205,13 @@ static inline void poly_act(struct brc_ledger *ledger, struct poly_sums *s,
     if (friction || viscous)
         poly_slip(u, m, t->x);
     if (friction) {
-        poly_push_shear(ledger, s, t, law, m, u, points->xi[p], points->n[p], points->weight[p],
-                        arm);
-        brc_copy(points->n[p], t->n);
+        poly_push_shear(ledger, s, t, law, m, u, poly_xi(points, p), poly_normal(points, p),
+                        *poly_weight(points, p), arm);
+        brc_copy(poly_normal(points, p), t->n);
     }
     if (viscous)
         poly_push_viscous(s, t, law, u, arm);
-    points->weight[p] = t->weight;
+    *poly_weight(points, p) = t->weight;
 }
 
 /* Forces and moments of a row from its sums. */
@@ -275,12 +275,12 @@ static inline void poly_account(struct brc_ledger *ledger, const struct poly_row
 static inline struct poly_bond poly_bond_of(const struct poly_params *p,
                                             const struct poly_rows *rows, size_t row)
 {
-    double stiff = rows->area[row] / rows->length[row];
-    double arm = p->torsion_length > 0 ? p->torsion_length : rows->length[row];
+    double stiff = *poly_bond_area(rows, row) / *poly_bond_length(rows, row);
+    double arm = p->torsion_length > 0 ? p->torsion_length : *poly_bond_length(rows, row);
     return (struct poly_bond){.kn = p->bn * stiff,
                               .kt = p->bt * stiff,
-                              .ktheta = p->torsion ? p->bm * rows->area[row] * arm : 0,
-                              .length = rows->length[row],
+                              .ktheta = p->torsion ? p->bm * *poly_bond_area(rows, row) * arm : 0,
+                              .length = *poly_bond_length(rows, row),
                               .eps_th = p->eps_th,
                               .theta_th = p->theta_limit ? p->theta_th : HUGE_VAL};
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The work lists of a block, four items at a time: how vertices and edges touch. */
+/* How four points of a list touch: vertices and edges. */
 #ifndef POLY_TOUCHES_H
 #define POLY_TOUCHES_H
 
@@ -70,24 +70,6 @@ BRC_LANES_INLINE void clear(brc_lanes *x, size_t size)
 
 /* --- touches ---------------------------------------------------------------------------------- */
 
-/* Lane i of four touches to the slot of its task. */
-BRC_LANES_INLINE void put_touches(struct poly_block *block, const struct poly_touches *t,
-                                  const struct poly_task *task)
-{
-    for (int32_t i = 0; i < BRC_LANES; i++) {
-        struct poly_touches *to = &block->touch[task[i].slot / BRC_LANES];
-        int lane = task[i].slot % BRC_LANES;
-        to->delta[lane] = t->delta[i];
-        to->weight[lane] = t->weight[i];
-        for (int k = 0; k < 3; k++) {
-            to->n[k][lane] = t->n[k][i];
-            to->x[k][lane] = t->x[k][i];
-            to->g[k][lane] = t->g[k][i];
-            to->c[k][lane] = t->c[k][i];
-        }
-    }
-}
-
 BRC_LANES_INLINE void full_weight(struct poly_touches *t)
 {
     t->weight = brc_lanes_all(1);
@@ -113,25 +95,28 @@ BRC_LANES_INLINE brc_lanes smooth(brc_lanes x, brc_lanes *slope)
     return x * x * (3 - 2 * x);
 }
 
-/* Distance s and outward normal n of v at a place that its foot has for sure. */
-BRC_LANES_INLINE void foot_known(brc_lanes *s, brc_lanes n[3], const struct poly_block *block,
-                                 const brc_lanes v[3], const int32_t *const item[], const bool flat)
+/* Distance s and outward normal n of v from planes. */
+BRC_LANES_INLINE void foot_on_plane(brc_lanes *s, brc_lanes n[3], const struct poly_block *block,
+                                    const brc_lanes v[3], const int32_t *const item[])
+{
+    const double *plane[BRC_LANES];
+    brc_lanes p[BRC_LANES];
+    for (int k = 0; k < BRC_LANES; k++)
+        plane[k] = block->st->plane[item[k][POLY_ITEM_PLACE]];
+    brc_lanes_gather4(p, plane);
+    set(n, p[0], p[1], p[2]);
+    *s = brc_lanes_dot(n, v) - p[3];
+}
+
+/* Distance s and outward normal n of v from edges or vertices. */
+BRC_LANES_INLINE void foot_on_edge(brc_lanes *s, brc_lanes n[3], const struct poly_block *block,
+                                   const brc_lanes v[3], const int32_t *const item[])
 {
     double(*world)[3] = block->st->world;
     int32_t i[2][BRC_LANES];
     for (int k = 0; k < BRC_LANES; k++) {
         i[0][k] = item[k][POLY_ITEM_PLACE];
         i[1][k] = item[k][POLY_ITEM_PLACE + 1];
-    }
-    if (flat) {
-        brc_lanes plane[4];
-        for (int k = 0; k < BRC_LANES; k++)
-            plane[k] = brc_lanes_at(block->st->plane[i[0][k]]);
-        brc_lanes_transpose(plane);
-        brc_lanes d = plane[3];
-        set(n, plane[0], plane[1], plane[2]);
-        *s = brc_lanes_dot(n, v) - d;
-        return;
     }
     brc_lanes p[3], along[3];
     brc_lanes_gather3(p, world, i[0]);
@@ -146,39 +131,37 @@ BRC_LANES_INLINE void foot_known(brc_lanes *s, brc_lanes n[3], const struct poly
 }
 
 /* Number of vertex i of the other core that may lower the weight, or -1. */
-BRC_LANES_INLINE int32_t near_vertex(const int32_t *item, int32_t i, const bool all)
+BRC_LANES_INLINE int32_t near_vertex(const int32_t *item, int32_t i)
 {
     const int32_t *near = item + POLY_ITEM_NEAR;
-    if (all)
-        return i < near[1] ? near[0] + i : -1;
-    return near[i];
+    if (i >= item[POLY_ITEM_LIST] >> POLY_NEAR_SHIFT)
+        return -1;
+    return item[POLY_ITEM_LIST] & POLY_IN_TURN ? near[0] + i : near[i];
 }
 
-/* poly_weigh_vertex with up to n_near vertices near; all: all of them. */
+/* poly_weigh_vertex */
 BRC_LANES_INLINE void weigh_vertex(struct poly_touches *t, const struct poly_block *block,
                                    const brc_lanes v[3], brc_lanes sign,
-                                   const int32_t *const item[], int32_t n_near, const bool all)
+                                   const int32_t *const item[], int32_t n_near)
 {
-    const double rest2 = block->rest * block->rest, ell2 = block->ell * block->ell;
+    const double rest2 = block->rest * block->rest, per2 = 1 / (block->ell * block->ell);
     brc_lanes product = brc_lanes_all(1), total[3], arm[3];
     clear(total, sizeof total);
-    for (int k = 0; k < BRC_LANES && all; k++)
-        n_near = item[k][POLY_ITEM_NEAR + 1] > n_near ? item[k][POLY_ITEM_NEAR + 1] : n_near;
     for (int32_t i = 0; i < n_near; i++) {
         int32_t u[BRC_LANES];
         brc_mask is_near;
         brc_lanes r[3], slope;
         for (int k = 0; k < BRC_LANES; k++) {
-            u[k] = near_vertex(item[k], i, all);
+            u[k] = near_vertex(item[k], i);
             is_near[k] = u[k] < 0 ? 0 : -1;
             u[k] = u[k] < 0 ? item[k][POLY_ITEM_VERTEX] : u[k];
         }
         brc_lanes_gather3(r, block->st->world, u);
         sub(r, v, r);
-        brc_lanes far = (brc_lanes_dot(r, r) - rest2) / ell2;
+        brc_lanes far = (brc_lanes_dot(r, r) - rest2) * per2;
         brc_lanes s = smooth(brc_lanes_pick(is_near, far, brc_lanes_all(1)), &slope);
         for (int k = 0; k < 3; k++)
-            total[k] = total[k] * s + product * (r[k] * (2 * slope / ell2));
+            total[k] = total[k] * s + product * (r[k] * (2 * per2 * slope));
         product *= s;
     }
     t->weight = 0.5 + 0.5 * product;
@@ -187,61 +170,50 @@ BRC_LANES_INLINE void weigh_vertex(struct poly_touches *t, const struct poly_blo
     brc_lanes_cross(t->c, arm, t->g);
 }
 
-/* Ends a list at a whole group: what is left over goes to slots that nobody reads. Returns its
- * number of tasks; the list is empty then. */
-BRC_LANES_INLINE int32_t end_list(struct poly_block *block, int list)
-{
-    struct poly_task *task = block->task[list];
-    int32_t n = block->n_tasks[list];
-    for (int32_t k = n; k % BRC_LANES != 0; k++)
-        task[k] = (struct poly_task){POLY_SPARE, task[n - 1].point};
-    block->n_tasks[list] = 0;
-    return n;
-}
-
-BRC_LANES_INLINE void vertex_kernel(struct poly_block *block, int list, const bool flat,
-                                    const int32_t n_near, const bool all)
+BRC_LANES_INLINE void touch_vertices(struct poly_touches *t, const struct poly_block *block,
+                                     const struct poly_task *task, const bool flat)
 {
     const struct poly_points *points = block->sim->pairs.point_columns;
-    const struct poly_task *task = block->task[list];
-    int32_t n = end_list(block, list);
-    for (int32_t first = 0; first < n; first += BRC_LANES) {
-        const int32_t *item[BRC_LANES];
-        int32_t vertex[BRC_LANES];
-        brc_lanes v[3], s, out[3], sign;
-        struct poly_touches t;
-        for (int k = 0; k < BRC_LANES; k++) {
-            item[k] = points->item[task[first + k].point];
-            vertex[k] = item[k][POLY_ITEM_VERTEX];
-            sign[k] = item[k][POLY_ITEM_LIST] & POLY_OF_A ? -1 : 1;
-        }
-        brc_lanes_gather3(v, block->st->world, vertex);
-        foot_known(&s, out, block, v, item, flat);
-        t.delta = block->rest - s; /* eq:gt12:5 */
-        scale(t.n, out, sign);     /* eq:gt12:3 */
-        for (int k = 0; k < 3; k++)
-            t.x[k] = v[k] - 0.5 * s * out[k];
-        full_weight(&t);
-        if (n_near > 0 || all)
-            weigh_vertex(&t, block, v, sign, item, n_near, all);
-        hide_apart(&t, brc_lanes_less(s, brc_lanes_all(block->rest))); /* eq:gt12:2 */
-        put_touches(block, &t, task + first);
+    const int32_t *item[BRC_LANES];
+    int32_t vertex[BRC_LANES], n_near = 0;
+    brc_lanes v[3], s, out[3], sign;
+    for (int k = 0; k < BRC_LANES; k++) {
+        item[k] = points->item[task[k].point];
+        vertex[k] = item[k][POLY_ITEM_VERTEX];
+        sign[k] = item[k][POLY_ITEM_LIST] & POLY_OF_A ? -1 : 1;
+        n_near = item[k][POLY_ITEM_LIST] >> POLY_NEAR_SHIFT > n_near
+                     ? item[k][POLY_ITEM_LIST] >> POLY_NEAR_SHIFT
+                     : n_near;
     }
+    brc_lanes_gather3(v, block->st->world, vertex);
+    if (flat)
+        foot_on_plane(&s, out, block, v, item);
+    else
+        foot_on_edge(&s, out, block, v, item);
+    t->delta = block->rest - s; /* eq:gt12:5 */
+    scale(t->n, out, sign);     /* eq:gt12:3 */
+    for (int k = 0; k < 3; k++)
+        t->x[k] = v[k] - 0.5 * s * out[k];
+    full_weight(t);
+    if (n_near > 0)
+        weigh_vertex(t, block, v, sign, item, n_near);
+    hide_apart(t, brc_lanes_less(s, brc_lanes_all(block->rest))); /* eq:gt12:2 */
 }
 
 /* poly_foot_weight */
-BRC_LANES_INLINE brc_lanes foot_weight(brc_lanes t, brc_lanes length, double ell, brc_lanes *slope)
+BRC_LANES_INLINE brc_lanes foot_weight(brc_lanes t, brc_lanes length, double per_ell,
+                                       brc_lanes *slope)
 {
-    brc_lanes s0, s1, w0 = smooth(t / ell, &s0), w1 = smooth((length - t) / ell, &s1);
-    *slope = (s0 * w1 - w0 * s1) / ell;
+    brc_lanes s0, s1, w0 = smooth(t * per_ell, &s0), w1 = smooth((length - t) * per_ell, &s1);
+    *slope = (s0 * w1 - w0 * s1) * per_ell;
     return w0 * w1;
 }
 
 /* Four edge pairs, as struct poly_lines and struct poly_crossing; ra and rb are r . a and r . b
  * with the unit directions a and b, r2 is r . r. */
 struct crossings {
-    brc_lanes m[3], m2, rm; /* of edges as they are */
-    brc_lanes a[3], b[3], c, sin2, ta, tb, la, lb, ra, rb, r2;
+    brc_lanes m[3], per_m, rm; /* of edges as they are; per_m: 1 / m . m */
+    brc_lanes a[3], b[3], c, sin2, per_sin2, ta, tb, la, lb, ra, rb, r2;
 };
 
 /* poly_cross_lines and poly_cross_edges; returns where both feet are inside edges that cross. */
@@ -263,12 +235,13 @@ BRC_LANES_INLINE brc_mask cross_lines(struct crossings *x, brc_lanes p[4][3])
     x->r2 = brc_lanes_dot(r, r);
     x->la = brc_lanes_sqrt(la2);
     x->lb = brc_lanes_sqrt(lb2);
-    brc_lanes per_a = 1 / x->la, per_b = 1 / x->lb, per_m = 1 / m2;
-    x->m2 = m2;
+    brc_lanes per = 1 / (x->la * x->lb), per_a = per * x->lb, per_b = per * x->la, per_m = 1 / m2;
+    x->per_m = per_m;
     scale(x->a, x->a, per_a);
     scale(x->b, x->b, per_b);
-    x->c = c * per_a * per_b;
-    x->sin2 = m2 * (per_a * per_a) * (per_b * per_b);
+    x->c = c * per;
+    x->sin2 = m2 * (per * per);
+    x->per_sin2 = la2 * lb2 * per_m;
     x->ta = ta * per_m * x->la;
     x->tb = tb * per_m * x->lb;
     x->ra = ra * per_a;
@@ -321,10 +294,12 @@ BRC_LANES_INLINE brc_lanes path_to_inside(const struct crossings *x, brc_lanes r
 BRC_LANES_INLINE void weigh_crossing(struct poly_touches *t, const struct crossings *x, double ell,
                                      brc_lanes d)
 {
-    brc_lanes da, db, dp, bn[3], ba[3], gn[3], per = 1 / x->sin2;
-    brc_lanes wa = foot_weight(x->ta, x->la, ell, &da), wb = foot_weight(x->tb, x->lb, ell, &db);
-    brc_lanes wp = smooth(x->sin2 / POLY_SKEW, &dp);
-    brc_lanes by_a = da * wb * wp, by_b = wa * db * wp, by_angle = wa * wb * dp / POLY_SKEW;
+    const double per_ell = 1 / ell, per_skew = 1 / POLY_SKEW;
+    brc_lanes da, db, dp, bn[3], ba[3], gn[3], per = x->per_sin2;
+    brc_lanes wa = foot_weight(x->ta, x->la, per_ell, &da);
+    brc_lanes wb = foot_weight(x->tb, x->lb, per_ell, &db);
+    brc_lanes wp = smooth(x->sin2 * per_skew, &dp);
+    brc_lanes by_a = da * wb * wp, by_b = wa * db * wp, by_angle = wa * wb * dp * per_skew;
     t->weight = wa * wb * wp;
     brc_lanes_cross(bn, x->b, t->n);
     brc_lanes_cross(ba, x->b, x->a);
@@ -339,14 +314,14 @@ BRC_LANES_INLINE void weigh_crossing(struct poly_touches *t, const struct crossi
 /* poly_cross_lines, poly_cross_edges and poly_touch_crossing; side is +1 or -1 where it is known,
  * else 0, and is known afterwards. Where the edges are apart, -delta is the path that they are free
  * for. */
-BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_block *block,
+BRC_LANES_INLINE brc_mask touch_lines(struct poly_touches *t, const struct poly_block *block,
                                       brc_lanes p[4][3], brc_lanes *side, brc_lanes reach,
                                       const bool merged)
 {
     struct crossings x;
     brc_mask inside = cross_lines(&x, p);
-    brc_mask touches = inside & brc_lanes_less(x.rm * x.rm, block->rest * block->rest * x.m2);
-    brc_lanes root_m = brc_lanes_sqrt(1 / x.m2), d = x.rm * root_m;
+    brc_lanes root_m = brc_lanes_sqrt(x.per_m), d = x.rm * root_m;
+    brc_mask touches = inside & brc_lanes_less(brc_lanes_abs(d), brc_lanes_all(block->rest));
     brc_lanes met = brc_lanes_pick(positive(-d), brc_lanes_all(-1), brc_lanes_all(1));
     *side = brc_lanes_pick(positive(brc_lanes_abs(*side)), *side, met);
     d *= *side;
@@ -366,46 +341,28 @@ BRC_LANES_INLINE brc_mask touch_edges(struct poly_touches *t, const struct poly_
     return touches;
 }
 
-BRC_LANES_INLINE void edge_kernel(struct poly_block *block, const bool merged)
+BRC_LANES_INLINE void touch_edges(struct poly_touches *t, const struct poly_block *block,
+                                  const struct poly_task *task, const bool merged)
 {
     struct poly_points *points = block->sim->pairs.point_columns;
-    const struct poly_task *task = block->task[POLY_CROSSING];
-    int32_t n = end_list(block, POLY_CROSSING);
-    for (int32_t first = 0; first < n; first += BRC_LANES, task += BRC_LANES) {
-        int32_t end[4][BRC_LANES], *item[BRC_LANES];
-        brc_lanes p[4][3], side, reach;
-        struct poly_touches t;
-        for (int k = 0; k < BRC_LANES; k++) {
-            item[k] = points->item[task[k].point];
-            side[k] = item[k][POLY_ITEM_SIDE];
-            reach[k] = poly_item_reach(item[k]);
-            for (int j = 0; j < 4; j++)
-                end[j][k] = item[k][POLY_ITEM_END + j];
-        }
+    int32_t end[4][BRC_LANES], *item[BRC_LANES];
+    brc_lanes p[4][3], side, reach;
+    for (int k = 0; k < BRC_LANES; k++) {
+        item[k] = points->item[task[k].point];
+        side[k] = item[k][POLY_ITEM_SIDE];
+        reach[k] = poly_item_reach(item[k]);
         for (int j = 0; j < 4; j++)
-            brc_lanes_gather3(p[j], block->st->world, end[j]);
-        hide_apart(&t, touch_edges(&t, block, p, &side, reach, merged));
-        put_touches(block, &t, task);
-        for (int32_t k = 0; k < BRC_LANES; k++) {
-            if (item[k][POLY_ITEM_SIDE] != 0)
-                continue;
-            item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : 1;
-            points->active[task[k].point] = side[k] < 0 ? 2 : 1;
-        }
+            end[j][k] = item[k][POLY_ITEM_END + j];
     }
-}
-
-BRC_LANES_INLINE void touch_kernel(struct poly_block *block, const bool merged)
-{
-    vertex_kernel(block, POLY_FLAT, true, merged ? 1 : 0, false);
-    if (merged) {
-        vertex_kernel(block, POLY_FLAT_NEAR, true, POLY_NEAR, false);
-        vertex_kernel(block, POLY_FLAT_ALL, true, 0, true);
-        vertex_kernel(block, POLY_SHARP, false, 1, false);
-        vertex_kernel(block, POLY_SHARP_NEAR, false, POLY_NEAR, false);
-        vertex_kernel(block, POLY_SHARP_ALL, false, 0, true);
+    for (int j = 0; j < 4; j++)
+        brc_lanes_gather3(p[j], block->st->world, end[j]);
+    hide_apart(t, touch_lines(t, block, p, &side, reach, merged));
+    for (int32_t k = 0; k < BRC_LANES; k++) {
+        if (item[k][POLY_ITEM_SIDE] != 0)
+            continue;
+        item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : 1;
+        points->active[task[k].point] = side[k] < 0 ? 2 : 1;
     }
-    edge_kernel(block, merged);
 }
 
 #endif

@@ -58,8 +58,8 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
             points->active[q] = 1;
         } else if (points->active[q]) {
             if (friction)
-                poly_release(ledger, &law, m, points->xi[q], points->weight[q]);
-            points->weight[q] = 0;
+                poly_release(ledger, &law, m, poly_xi(points, q), *poly_weight(points, q));
+            *poly_weight(points, q) = 0;
             points->active[q] = 0;
         }
     }
