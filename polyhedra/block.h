@@ -31,8 +31,8 @@ struct poly_wrenches {
 /* Four rows. */
 struct poly_row_group {
     brc_lanes x[3], dv[3], wa[3], wb[3]; /* from a to b; relative velocity and spins */
-    brc_lanes path;   /* m, relative path of the step */
-    brc_lanes broken; /* > 1: the bond breaks */
+    brc_lanes path;                      /* m, relative path of the step */
+    brc_lanes broken;                    /* > 1: the bond breaks */
     brc_lanes k[3], gap;
     struct poly_wrenches bond;
     brc_lanes stored, slid;                         /* J, of the tangential springs */
@@ -60,7 +60,13 @@ enum { POLY_XI = 0, POLY_WEIGHT = 3, POLY_NORMAL = 4, POLY_SPRING = 8 };
 /* Motion of a row since its springs were computed (struct poly_rows, shift): displacement of b
  * relative to a at the centre of a, path, turn of b relative to a, path at which they are computed
  * anew (0: at each step), a quarter of the sum of both turns. */
-enum { POLY_SHIFT_PATH = 3, POLY_SHIFT_TURN = 4, POLY_SHIFT_END = 7, POLY_SHIFT_BOTH, POLY_SHIFT = 12 };
+enum {
+    POLY_SHIFT_PATH = 3,
+    POLY_SHIFT_TURN = 4,
+    POLY_SHIFT_END = 7,
+    POLY_SHIFT_BOTH,
+    POLY_SHIFT = 12
+};
 
 /* What a point's touch is computed from (struct poly_points, item): numbers of st->world and
  * st->plane, so that nothing else of the point need be looked at while its row is calm. */
@@ -95,8 +101,8 @@ enum {
     POLY_N_LISTS,
     POLY_LIST = 7, /* mask */
     /* of an item */
-    POLY_OF_A = 8,     /* the vertex belongs to a */
-    POLY_IN_TURN = 16, /* vertices near: all from the first on, in turn */
+    POLY_OF_A = 8,      /* the vertex belongs to a */
+    POLY_IN_TURN = 16,  /* vertices near: all from the first on, in turn */
     POLY_NEAR_SHIFT = 5 /* how many vertices are near, from this bit on */
 };
 
@@ -143,7 +149,7 @@ struct poly_block {
     bool listed[POLY_ROWS], calm[POLY_ROWS];
     bool held[POLY_ROWS];     /* its points are not looked at */
     bool open[POLY_ROWS + 1]; /* some of its points are apart */
-    struct poly_pair pair; /* of the row pair_row */
+    struct poly_pair pair;    /* of the row pair_row */
     int32_t pair_row;
     int32_t n_tasks[POLY_N_LISTS];
     double nearest[POLY_ROWS + 1]; /* the smallest gap of a row's points */

@@ -56,14 +56,14 @@ BRC_LANES_INLINE void turn_spring(brc_lanes xi[3], const brc_lanes n_old[3], con
 /* Adds the tangential part of du to xi and caps it (eqs 8-9): what is left over has slipped.
  * Returns where it has. */
 BRC_LANES_INLINE brc_mask slide_spring(brc_lanes xi[3], const brc_lanes n[3], const brc_lanes du[3],
-                                   brc_lanes limit)
+                                       brc_lanes limit)
 {
     add(xi, xi, du); /* eq:gt12:9 */
     axpy(xi, -brc_lanes_dot(xi, n), n);
     brc_lanes xi2 = brc_lanes_dot(xi, xi);
     brc_mask slips = brc_lanes_less(limit * limit, xi2);
-    scale(xi, xi,
-          brc_lanes_pick(slips, limit / brc_lanes_sqrt(xi2), brc_lanes_all(1))); /* eq:gt12:8 */
+    brc_lanes cap = brc_lanes_pick(slips, limit / brc_lanes_sqrt(xi2), brc_lanes_all(1));
+    scale(xi, xi, cap); /* eq:gt12:8 */
     return slips;
 }
 
@@ -74,10 +74,10 @@ struct springs {
 
 /* Tangential springs: xi and the normals of the last step become those of now; old is the weight
  * that they had, where they touch now. */
-BRC_LANES_INLINE brc_mask push_shear(struct springs *p, struct sums *s, const struct poly_touches *t,
-                                 const struct frames *row, const struct poly_block *block,
-                                 const brc_lanes du[3], const brc_lanes arm[3], brc_lanes old,
-                                 const bool ledger)
+BRC_LANES_INLINE brc_mask push_shear(struct springs *p, struct sums *s,
+                                     const struct poly_touches *t, const struct frames *row,
+                                     const struct poly_block *block, const brc_lanes du[3],
+                                     const brc_lanes arm[3], brc_lanes old, const bool ledger)
 {
     brc_lanes xi[3], before[3], f[3], turn[3];
     brc_mask touches = positive(t->weight);
@@ -125,9 +125,8 @@ BRC_LANES_INLINE void push_viscous(struct sums *s, const struct poly_touches *t,
  * that slips along t has no stiffness in that direction, and -mu kn w t n by its cap. q is what a
  * change of weight does. */
 BRC_LANES_INLINE void spring_stiffness(brc_lanes a[3][3], brc_lanes q[3],
-                                       const struct poly_block *block,
-                                       const struct poly_touches *t, const brc_lanes xi[3],
-                                       brc_mask slips, const bool friction)
+                                       const struct poly_block *block, const struct poly_touches *t,
+                                       const brc_lanes xi[3], brc_mask slips, const bool friction)
 {
     const brc_lanes kn = block->kn * t->weight, none = brc_lanes_all(0);
     const brc_lanes kt = friction ? block->kt * t->weight : none;
@@ -198,8 +197,8 @@ BRC_LANES_INLINE void add_sums(struct poly_block *block, const int32_t row[BRC_L
 BRC_LANES_INLINE brc_mask push_points(const struct poly_block *block, struct sums *s,
                                       const struct poly_touches *t, const struct frames *row,
                                       struct springs *springs, const brc_lanes arm[3],
-                                      const bool condensed, const bool friction,
-                                      const bool viscous, const bool ledger)
+                                      const bool condensed, const bool friction, const bool viscous,
+                                      const bool ledger)
 {
     brc_lanes back[3], u[3], du[3], old = springs->weight;
     brc_mask touches = positive(t->weight), slips = {0};
@@ -268,7 +267,8 @@ BRC_LANES_INLINE void act(struct poly_block *block, const struct poly_task *task
     gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
     brc_lanes arm[3], old = springs.weight;
     sub(arm, t->x, f.xa);
-    brc_mask slips = push_points(block, &s, t, &f, &springs, arm, condensed, friction, viscous, ledger);
+    brc_mask slips =
+        push_points(block, &s, t, &f, &springs, arm, condensed, friction, viscous, ledger);
     note_changes(block, task, n, t, old);
     if (condensed)
         add_tangents(block, row, t, springs.xi, slips, arm, friction);
@@ -447,7 +447,7 @@ KERNEL(finish_ledger, finish_kernel(block, true, false, false))
 KERNEL(finish_viscous, finish_kernel(block, true, true, false))
 KERNEL(finish_condensed, finish_kernel(block, false, false, true))
 KERNEL(finish_condensed_ledger, finish_kernel(block, true, false, true))
-#define POINTS(name, ...)                                                 \
+#define POINTS(name, ...)                                                  \
     KERNEL(points_##name, points_kernel(block, false, false, __VA_ARGS__)) \
     KERNEL(merged_##name, points_kernel(block, true, false, __VA_ARGS__))
 POINTS(plain, false, false, false)

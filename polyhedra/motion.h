@@ -187,8 +187,7 @@ BRC_LANES_INLINE brc_lanes twist(const brc_lanes n[3], const brc_lanes ta[3], co
     x = brc_lanes_pick(intact, x, brc_lanes_all(1));
     /* the series of the arc tangent: what it leaves out is below t^10 / 11 */
     brc_lanes t = y / x, t2 = t * t;
-    brc_lanes angle =
-        t * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 * (1.0 / 7 - t2 * (1.0 / 9)))));
+    brc_lanes angle = t * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 * (1.0 / 7 - t2 * (1.0 / 9)))));
     brc_mask small = positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(0.03));
     if (brc_lanes_any(~small))
         for (int k = 0; k < BRC_LANES; k++)

@@ -25,8 +25,7 @@ static enum poly_rule rule_of(const struct poly_block *block)
 
 static void add_task(struct poly_block *block, int list, int32_t i, size_t p)
 {
-    block->task[list][block->n_tasks[list]++] =
-        (struct poly_task){.row = i, .point = (int32_t)p};
+    block->task[list][block->n_tasks[list]++] = (struct poly_task){.row = i, .point = (int32_t)p};
 }
 
 /* A touch that is known, or how far a point is apart. */
@@ -206,8 +205,7 @@ void poly_work_off(struct poly_block *block)
     if (block->n_apart > 1)
         qsort(block->apart, (size_t)block->n_apart, sizeof *block->apart, compare_apart);
     for (int32_t i = 0; i < block->n_apart; i++)
-        come_apart(block, block->apart[i].row, (size_t)block->apart[i].point,
-                   block->apart[i].path);
+        come_apart(block, block->apart[i].row, (size_t)block->apart[i].point, block->apart[i].path);
     block->n_points = 0;
 }
 

@@ -61,7 +61,8 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, si
     *poly_bond_area(rows, row) = f->area[facet];
     if (params->area == POLY_AREA_ERODED)
         *poly_bond_area(rows, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
-    *poly_bond_length(rows, row) = params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
+    *poly_bond_length(rows, row) =
+        params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
     fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
     if (!params->bonds || *poly_bond_area(rows, row) == 0)
         return;
@@ -94,8 +95,8 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     brc_scale(n, p->n, -1);
     c->facet[row] = (int32_t)facet;
     *poly_bond_area(rows, row) = params->area == POLY_AREA_FACET
-                          ? f->area[facet]
-                          : eroded_area(&st->shapes, (size_t)c->a[row], (int32_t)facet);
+                                     ? f->area[facet]
+                                     : eroded_area(&st->shapes, (size_t)c->a[row], (int32_t)facet);
     *poly_bond_length(rows, row) =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : brc_dot(d, p->n);
     fix_bond(sim, c, row, f->centroid[facet], n);
