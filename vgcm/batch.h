@@ -243,7 +243,7 @@ VGCM_INLINE void item_finish(struct loop *l, int flags, struct item *q, struct b
     if (brc_wide_any(grows)) {
         brc_wide_put(p->dn + j, w->dn);
         brc_wide_put(p->ds + j, w->ds);
-        brc_wide_put(p->lost + j, brc_wide_at(p->lost + j) + lost);
+        brc_wide_put(p->lost + j, brc_wide_at(p->lost + j) + brc_wide_where(grows, lost));
     }
     for (int k = 0; k < VGCM_N_MOTION; k++)
         sum[k] = brc_wide_all(0);

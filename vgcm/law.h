@@ -337,10 +337,10 @@ static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const
                                 struct vgcm_point *p, struct vgcm_energy *e)
 {
     double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
-    double fn_old = kn * fmin(p->un, 0), s_old = p->fs, t_old = p->ft;
+    double fn_old = p->un < 0 ? kn * p->un : 0, s_old = p->fs, t_old = p->ft;
     double s = s_old - ks * du[1], t = t_old - ks * du[2];
     p->un += du[0];
-    p->fn = kn * fmin(p->un, 0);
+    p->fn = p->un < 0 ? kn * p->un : 0;
     double limit = -bond->law->mu * p->fn, force2 = s * s + t * t;
     double part = limit * limit < force2 ? limit / sqrt(force2) : 1;
     p->fs = part * s;
