@@ -32,7 +32,6 @@ enum { BLOCKS = 2, ITEMS = 64, AHEAD = 8 };
 
 /* Four rows on their way through a batch. */
 struct block {
-    size_t i; /* the first */
     brc_mask facet, points;
     struct vgcm_motion m;
     brc_lanes u[VGCM_N_MOTION]; /* fields at the end of the step */
@@ -41,6 +40,7 @@ struct block {
     /* of rows of points: bonds, viscosity; four partial sums of each row */
     brc_lanes bond[VGCM_N_BOND], drag;
     brc_lanes force[VGCM_N_MOTION][BRC_LANES], drags[VGCM_N_MOTION][BRC_LANES];
+    size_t i;                /* the first row */
     bool changes[BRC_LANES]; /* whether damage or plastic slip of the row did, or may at once */
 };
 
