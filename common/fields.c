@@ -131,7 +131,7 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
     }
     for (int i = 0; n > t->n && i < t->set.n; i++) {
         size_t size = brc_field_size(&t->set.fields[i]);
-        memset((char *)brc_table_column(t, i) + t->n * size, 0, (n - t->n) * size);
+        memset((char *)brc_table_column(t, i) + t->n * size, 0, (round_up(n, ROWS) - t->n) * size);
     }
     t->n = n;
     return 0;

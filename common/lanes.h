@@ -42,7 +42,11 @@ BRC_LANES_INLINE void brc_lanes_put(double *x, brc_lanes a)
 /* a where the mask is set, b elsewhere */
 BRC_LANES_INLINE brc_lanes brc_lanes_pick(brc_mask m, brc_lanes a, brc_lanes b)
 {
+#ifdef __AVX2__
+    return __builtin_ia32_blendvpd256(b, a, (brc_lanes)m);
+#else
     return (brc_lanes)((m & (brc_mask)a) | (~m & (brc_mask)b));
+#endif
 }
 
 /* a where the mask is set, 0 elsewhere */
@@ -101,14 +105,23 @@ BRC_LANES_INLINE brc_lanes brc_lanes_sign(brc_lanes a, brc_lanes b)
     return (brc_lanes)(((brc_mask)a & INT64_MAX) | ((brc_mask)b & INT64_MIN));
 }
 
+/* a where a < b, b elsewhere: the machine's instruction does just that. */
 BRC_LANES_INLINE brc_lanes brc_lanes_min(brc_lanes a, brc_lanes b)
 {
+#ifdef __AVX2__
+    return __builtin_ia32_minpd256(a, b);
+#else
     return brc_lanes_pick(brc_lanes_less(a, b), a, b);
+#endif
 }
 
 BRC_LANES_INLINE brc_lanes brc_lanes_max(brc_lanes a, brc_lanes b)
 {
+#ifdef __AVX2__
+    return __builtin_ia32_maxpd256(a, b);
+#else
     return brc_lanes_pick(brc_lanes_less(b, a), a, b);
+#endif
 }
 
 BRC_LANES_INLINE brc_lanes brc_lanes_sqrt(brc_lanes a)

@@ -37,15 +37,24 @@ static const double MASS_GROWTH = 1.01;
 static const double SAFE_MASS_MARGIN = 1.2, MASS_LIMIT = 0.9;
 
 /* Adds the forces and moments of all rows to the bodies, row after row: for each body that is the
- * ascending order of its rows, so that the sums depend on global numbers only. */
+ * ascending order of its rows, so that the sums depend on global numbers only. The rows of one a
+ * follow each other, after all those in which it is b. */
 static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3])
 {
-    for (size_t row = 0; row < c->n; row++) {
-        double *fa = f[c->a[row]], *fb = f[c->b[row]], *ta = t[c->a[row]], *tb = t[c->b[row]];
-        brc_sub(fa, fa, c->f[row]);
-        brc_add(fb, fb, c->f[row]);
-        brc_add(ta, ta, c->ta[row]);
-        brc_add(tb, tb, c->tb[row]);
+    for (size_t row = 0; row < c->n;) {
+        int32_t a = c->a[row];
+        double fa[3], ta[3];
+        brc_copy(fa, f[a]);
+        brc_copy(ta, t[a]);
+        for (; row < c->n && c->a[row] == a; row++) {
+            double *fb = f[c->b[row]], *tb = t[c->b[row]];
+            brc_sub(fa, fa, c->f[row]);
+            brc_add(fb, fb, c->f[row]);
+            brc_add(ta, ta, c->ta[row]);
+            brc_add(tb, tb, c->tb[row]);
+        }
+        brc_copy(f[a], fa);
+        brc_copy(t[a], ta);
     }
 }
 

@@ -32,15 +32,16 @@ enum { BLOCKS = 2, ITEMS = 64, AHEAD = 8 };
 
 /* Four rows on their way through a batch. */
 struct block {
-    size_t i; /* the first */
     brc_mask facet, points;
     struct vgcm_motion m;
     brc_lanes u[VGCM_N_MOTION]; /* fields at the end of the step */
-    brc_lanes sum[VGCM_N_MOTION], opening;
+    brc_lanes sum[VGCM_N_MOTION];
+    brc_lanes moved; /* m, what the slack of rows of points loses in this step, or would */
     /* of rows of points: bonds, viscosity; four partial sums of each row */
     brc_lanes bond[VGCM_N_BOND], drag;
     brc_lanes force[VGCM_N_MOTION][BRC_LANES], drags[VGCM_N_MOTION][BRC_LANES];
-    brc_lanes openings[BRC_LANES];
+    size_t i;                /* the first row */
+    bool changes[BRC_LANES]; /* whether damage or plastic slip of the row did, or may at once */
 };
 
 /* Points of one row: eight, or one half of eight. */
@@ -155,6 +156,22 @@ VGCM_INLINE void spread_bond(brc_wide all[VGCM_N_BOND], const struct item *q)
         all[k] = brc_wide_all(q->block->bond[k][q->lane]);
 }
 
+/* Plastic slip before the step: none where there is neither damage by slip nor a broken point, and
+ * then it is not read; of points that are broken and open it is the whole displacement. */
+VGCM_INLINE void item_slip(const struct loop *l, size_t j, const brc_wide at[3],
+                           const brc_wide du[3], struct vgcm_point_wide *w)
+{
+    const struct vgcm_points *p = l->p;
+    brc_wide none = brc_wide_all(0);
+    brc_wide_mask broken = brc_wide_not(vgcm_wide_whole(w->damage_old));
+    w->loose = brc_wide_both(brc_wide_less(none, w->un_old), broken);
+    w->slip_s = w->slip_t = none;
+    if (brc_wide_any(broken | brc_wide_less(none, w->ds))) {
+        w->slip_s = brc_wide_pick(w->loose, at[1] - du[1], brc_wide_at(p->slip_s + j));
+        w->slip_t = brc_wide_pick(w->loose, at[2] - du[2], brc_wide_at(p->slip_t + j));
+    }
+}
+
 /* First part of the law: opening, damage by it, trial shear force. */
 VGCM_INLINE void item_open(const struct loop *l, int flags, struct item *q)
 {
@@ -173,8 +190,11 @@ VGCM_INLINE void item_open(const struct loop *l, int flags, struct item *q)
     w->damage_old = w->dn + w->ds;
     w->un = at[0];
     w->un_old = at[0] - du[0];
-    w->s = brc_wide_at(p->slip_s + j) - at[1]; /* eq:vgcm:16, eq:vgcm:18 */
-    w->t = brc_wide_at(p->slip_t + j) - at[2];
+    item_slip(l, j, at, du, w);
+    w->s = w->slip_s - at[1]; /* eq:vgcm:16, eq:vgcm:18 */
+    w->t = w->slip_t - at[2];
+    w->s_old = w->s + du[1];
+    w->t_old = w->t + du[2];
     w->force2 = w->s * w->s + w->t * w->t;
     vgcm_wide_open(l->law, bond, flags, w);
 }
@@ -201,36 +221,48 @@ VGCM_INLINE void item_finish(struct loop *l, int flags, struct item *q, struct b
     const struct vgcm_point_wide *w = &q->p;
     size_t j = q->j;
     brc_wide s = brc_wide_at(p->s + j), t = brc_wide_at(p->t + j), area = brc_wide_at(p->area + j);
-    brc_wide all[VGCM_N_MOTION], bond[VGCM_N_BOND], du[3], sum[VGCM_N_MOTION];
-    spread(all, q->block->m.du, q->lane);
-    vgcm_motion_at(du, all, s, t);
+    brc_wide bond[VGCM_N_BOND], sum[VGCM_N_MOTION];
     spread_bond(bond, q);
-    brc_wide lost =
-        vgcm_wide_account(l->law, bond, flags, area, du[1], du[2], w, &booked->points[q->half]);
-    brc_wide fs = w->part * w->s, ft = w->part * w->t;
-    brc_wide_put(p->dn + j, w->dn);
-    brc_wide_put(p->ds + j, w->ds);
-    brc_wide_put(p->slip_s + j, brc_wide_at(p->slip_s + j) - (w->s - fs));
-    brc_wide_put(p->slip_t + j, brc_wide_at(p->slip_t + j) - (w->t - ft));
-    brc_wide_put(p->lost + j, brc_wide_at(p->lost + j) + lost);
+    brc_wide lost = vgcm_wide_account(l->law, bond, flags, area, w, &booked->points[q->half]);
+    brc_wide fs = w->s, ft = w->t, damage = w->dn + w->ds;
+    brc_wide_mask live = brc_wide_first(q->n), is = vgcm_wide_whole(damage);
+    brc_wide_mask grows = brc_wide_less(w->damage_old, damage);
+    brc_wide_mask closed = brc_wide_not(is | brc_wide_less(brc_wide_all(0), w->un));
+    brc_wide_mask changes = grows | closed;
+    if (w->slides) {
+        fs *= w->part;
+        ft *= w->part;
+        changes |= brc_wide_both(is, brc_wide_less(w->part, brc_wide_all(1)));
+    }
+    if (brc_wide_any(brc_wide_both(live, changes)))
+        q->block->changes[q->lane] = true;
+    if (w->slides || brc_wide_any(w->loose)) {
+        brc_wide_put(p->slip_s + j, w->slip_s - (w->s - fs));
+        brc_wide_put(p->slip_t + j, w->slip_t - (w->t - ft));
+    }
+    if (brc_wide_any(grows)) {
+        brc_wide_put(p->dn + j, w->dn);
+        brc_wide_put(p->ds + j, w->ds);
+        brc_wide_put(p->lost + j, brc_wide_at(p->lost + j) + brc_wide_where(grows, lost));
+    }
     for (int k = 0; k < VGCM_N_MOTION; k++)
         sum[k] = brc_wide_all(0);
     vgcm_force_add(sum, area * w->pull, area * fs, area * ft, s, t);
     item_add(q->block->force, q->lane, sum);
-    brc_wide_mask live = brc_wide_first(q->n), is = vgcm_wide_whole(w->dn + w->ds);
     brc_wide_mask broke = brc_wide_both(live, vgcm_wide_whole(w->damage_old));
     broke = brc_wide_both(broke, brc_wide_not(is));
     if (brc_wide_any(broke))
         add_events(l, q, broke);
     if (flags & VGCM_VISCOUS) {
+        brc_wide all[VGCM_N_MOTION], du[3];
+        spread(all, q->block->m.du, q->lane);
+        vgcm_motion_at(du, all, s, t);
         for (int k = 0; k < VGCM_N_MOTION; k++)
             sum[k] = brc_wide_all(0);
         point_drag(sum, area * q->block->drag[q->lane], du, is, w->un,
                    area * w->pull * (2 * bond[VGCM_HALF_KN]), s, t);
         item_add(q->block->drags, q->lane, sum);
     }
-    brc_lanes *opening = &q->block->openings[q->lane];
-    *opening = brc_wide_least(*opening, brc_wide_pick(live, w->un, brc_wide_all(HUGE_VAL)));
 }
 
 /* Lists the points of a block's rows of points. */
@@ -242,8 +274,10 @@ VGCM_INLINE void list_items(struct loop *l, int flags, struct batch *batch, stru
         b->drag = drag_of(l, b->i);
     for (int lane = 0; lane < BRC_LANES; lane++) {
         for (int k = 0; k < VGCM_N_MOTION; k++)
-            b->force[k][lane] = b->drags[k][lane] = brc_lanes_all(0);
-        b->openings[lane] = brc_lanes_all(HUGE_VAL);
+            b->force[k][lane] = brc_lanes_all(0);
+        for (int k = 0; k < VGCM_N_MOTION && flags & VGCM_VISCOUS; k++)
+            b->drags[k][lane] = brc_lanes_all(0);
+        b->changes[lane] = false;
         size_t i = b->i + (size_t)lane;
         int64_t n = b->points[lane] ? l->c->np[i] : 0;
         for (int64_t k = 0; k < n; k += BRC_WIDE) {
@@ -279,7 +313,6 @@ VGCM_INLINE void sum_points(struct loop *l, int flags, struct block *b, struct b
         brc_lanes stiffness = is_normal ? kn : l->law->eta * kn;
         b->sum[k] = brc_lanes_pick(b->points, stiffness * brc_lanes_sums(b->force[k]), b->sum[k]);
     }
-    b->opening = brc_lanes_pick(b->points, brc_lanes_mins(b->openings), b->opening);
     if (flags & VGCM_VISCOUS) {
         for (int k = 0; k < VGCM_N_MOTION; k++)
             drags[k] = brc_lanes_sums(b->drags[k]);

@@ -136,6 +136,23 @@ VGCM_INLINE void vgcm_force_affine(brc_lanes sum[VGCM_N_MOTION], brc_lanes kn, b
     sum[VGCM_TWIST] = m[VGCM_A_T] * us - m[VGCM_A_S] * ut - (m[VGCM_A_SS] + m[VGCM_A_TT]) * twist;
 }
 
+/* Generalised force of points at rest under the field u, from their sums. */
+VGCM_INLINE void vgcm_force_held(brc_lanes sum[VGCM_N_MOTION], brc_lanes kn, brc_lanes ks,
+                                 const brc_lanes held[VGCM_N_HELD],
+                                 const brc_lanes u[VGCM_N_MOTION])
+{
+    brc_lanes open = kn * u[VGCM_OPEN], bs = kn * u[VGCM_BEND_S], bt = kn * u[VGCM_BEND_T];
+    brc_lanes us = u[VGCM_S], ut = u[VGCM_T], twist = u[VGCM_TWIST];
+    brc_lanes area = held[VGCM_HELD_A], as = held[VGCM_HELD_A_S], at = held[VGCM_HELD_A_T];
+    sum[VGCM_OPEN] = held[VGCM_A] * open - held[VGCM_A_S] * bt + held[VGCM_A_T] * bs;
+    sum[VGCM_BEND_S] = held[VGCM_A_T] * open - held[VGCM_A_ST] * bt + held[VGCM_A_TT] * bs;
+    sum[VGCM_BEND_T] = held[VGCM_A_SS] * bt - held[VGCM_A_S] * open - held[VGCM_A_ST] * bs;
+    sum[VGCM_S] = ks * (held[VGCM_HELD_SLIP_S] + at * twist - area * us);
+    sum[VGCM_T] = ks * (held[VGCM_HELD_SLIP_T] - as * twist - area * ut);
+    sum[VGCM_TWIST] =
+        ks * (held[VGCM_HELD_SLIP_TWIST] + at * us - as * ut - held[VGCM_HELD_POLAR] * twist);
+}
+
 /* Work that the motion u does against the generalised force: what the contact takes up. */
 VGCM_INLINE brc_lanes vgcm_force_work(const brc_lanes f[VGCM_N_MOTION],
                                       const brc_lanes u[VGCM_N_MOTION])

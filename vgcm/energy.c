@@ -16,10 +16,11 @@ static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgc
             field[k] = brc_wide_all(u[k]);
         vgcm_motion_at(at, field, brc_wide_all(p->s[j]), brc_wide_all(p->t[j]));
         q.un = at[0][0];
-        q.fs -= ks * at[1][0];
-        q.ft -= ks * at[2][0];
         q.dn = p->dn[j];
         q.ds = p->ds[j];
+        bool is_loose = q.un > 0 && vgcm_law_damage(&q) == 1;
+        q.fs = is_loose ? 0 : q.fs - ks * at[1][0];
+        q.ft = is_loose ? 0 : q.ft - ks * at[2][0];
     }
     q.fn = vgcm_law_normal(bond, flags, p->area[j], &q);
     return q;

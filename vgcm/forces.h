@@ -4,7 +4,9 @@
 #ifndef VGCM_FORCES_H
 #define VGCM_FORCES_H
 
-#include "vgcm/batch.h"
+#include "vgcm/hold.h"
+
+#include <string.h>
 
 /* ---- affine rows --------------------------------------------------------------------------- */
 
@@ -57,21 +59,13 @@ VGCM_INLINE brc_mask affine_fails(const struct loop *l, size_t i, brc_mask rows,
     return fails;
 }
 
-/* The rows of the mask as affine fields: generalised forces of the field u. Rows in which a point
- * leaves the elastic range become rows of points and are taken out of the mask. */
-VGCM_INLINE brc_mask affine_rows(struct loop *l, size_t i, int flags, brc_mask rows,
-                                 const struct vgcm_motion *m, const brc_lanes u[VGCM_N_MOTION],
-                                 brc_lanes sum[VGCM_N_MOTION], struct booked *booked)
+/* Generalised forces of the rows of the mask as affine fields. */
+VGCM_INLINE void affine_forces(struct loop *l, size_t i, int flags, brc_mask rows,
+                               const struct vgcm_motion *m, const brc_lanes u[VGCM_N_MOTION],
+                               brc_lanes sum[VGCM_N_MOTION], struct booked *booked)
 {
     brc_lanes middle[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
     brc_lanes kn = brc_lanes_at(l->f->kn + i), ks = l->law->eta * kn;
-    brc_mask fails = affine_fails(l, i, rows, kn, u);
-    if (brc_lanes_any(fails)) {
-        for (int k = 0; k < BRC_LANES; k++)
-            if (fails[k])
-                l->f->phase[i + (size_t)k] = VGCM_POINTS;
-        rows &= ~fails;
-    }
     brc_lanes_at6(moment, l->f->moment + i);
     if (flags & VGCM_LEDGER) {
         for (int k = 0; k < VGCM_N_MOTION; k++)
@@ -85,6 +79,21 @@ VGCM_INLINE brc_mask affine_rows(struct loop *l, size_t i, int flags, brc_mask r
         vgcm_force_affine(drag, c, c, moment, m->du);
         add_drag(l, i, flags, rows, m->du, drag, sum, &booked->viscous);
     }
+}
+
+/* The rows of the mask that stay affine, with their forces; those in which a point leaves the
+ * elastic range become rows of points. */
+VGCM_INLINE brc_mask affine_rows(struct loop *l, size_t i, int flags, brc_mask rows,
+                                 struct block *b, struct booked *booked)
+{
+    brc_mask fails = affine_fails(l, i, rows, brc_lanes_at(l->f->kn + i), b->u);
+    if (brc_lanes_any(fails)) {
+        for (int k = 0; k < BRC_LANES; k++)
+            if (fails[k])
+                l->f->phase[i + (size_t)k] = VGCM_POINTS;
+        rows &= ~fails;
+    }
+    affine_forces(l, i, flags, rows, &b->m, b->u, b->sum, booked);
     return rows;
 }
 
@@ -196,15 +205,21 @@ VGCM_INLINE void fetch_ahead(const struct loop *l, size_t i)
                                     p->ds, p->slip_s, p->slip_t, p->lost};
     for (int m = 0; m < 4; m++)
         fetch_lines(numbers[m] + far, BRC_LANES * sizeof(int32_t));
+    fetch_lines(f->slack + far, BRC_LANES * sizeof(double));
     for (int m = 0; m < 4; m++)
         fetch_lines(scalars[m] + k, BRC_LANES * sizeof(double));
     for (int m = 0; m < 5; m++)
         fetch_lines(vectors[m] + k, BRC_LANES * sizeof *vectors[m]);
     fetch_lines(f->u + k, BRC_LANES * sizeof *f->u);
     fetch_lines(f->moment + k, BRC_LANES * sizeof *f->moment);
-    for (size_t row = k; row < k + BRC_LANES; row++)
-        for (int m = 0; f->phase[row] == VGCM_POINTS && m < 8; m++)
+    for (size_t row = k; row < k + BRC_LANES; row++) {
+        if (f->phase[row] != VGCM_POINTS)
+            continue;
+        if (f->slack[row] > 0 && c->status[row] != BRC_BROKEN)
+            fetch_lines(f->held[row], sizeof f->held[row]);
+        for (int m = 0; f->slack[row] == 0 && m < 8; m++)
             fetch_lines(places[m] + c->p0[row], BRC_EIGHT * sizeof(double));
+    }
 }
 
 /* Moves a block of rows, and forms the forces of its affine ones. */
@@ -214,28 +229,53 @@ VGCM_INLINE void begin_block(struct loop *l, size_t i, int flags, brc_mask facet
     struct block *b = &batch->block[batch->n_blocks++];
     b->i = i;
     b->facet = facet;
-    fetch_ahead(l, i);
     vgcm_motion_of(&l->sim->bodies, l->c, i, l->sim->dt, &b->m);
     move_facets(l, i, facet, &b->m, b->u);
     for (int k = 0; k < VGCM_N_MOTION; k++)
         b->sum[k] = brc_lanes_all(0);
-    b->opening = b->u[VGCM_OPEN];
     if (brc_lanes_any(affine))
-        affine = affine_rows(l, i, flags, affine, &b->m, b->u, b->sum, booked);
+        affine = affine_rows(l, i, flags, affine, b, booked);
     b->points = facet & ~affine;
+    if (!(flags & VGCM_VISCOUS) && brc_lanes_any(b->points))
+        b->points &= ~resting_rows(l, i, flags, b, booked);
     if (brc_lanes_any(b->points))
         list_items(l, flags, batch, b, booked);
+}
+
+/* Four rows that are affine and stay so, from end to end; false where one does not, with nothing
+ * done. */
+VGCM_INLINE bool affine_block(struct loop *l, size_t i, int flags, struct booked *booked)
+{
+    const brc_mask all = {-1, -1, -1, -1};
+    struct vgcm_motion m;
+    brc_lanes u[VGCM_N_MOTION], sum[VGCM_N_MOTION];
+    vgcm_motion_of(&l->sim->bodies, l->c, i, l->sim->dt, &m);
+    brc_lanes_at6(u, l->f->u + i);
+    for (int k = 0; k < VGCM_N_MOTION; k++)
+        u[k] += m.du[k]; /* eq:vgcm:14 */
+    if (brc_lanes_any(affine_fails(l, i, all, brc_lanes_at(l->f->kn + i), u)))
+        return false;
+    brc_lanes_put3(l->f->n + i, m.n);
+    brc_lanes_put3(l->f->s + i, m.s);
+    brc_lanes_put6(l->f->u + i, u);
+    brc_lanes_put(l->c->gap + i, u[VGCM_OPEN]);
+    affine_forces(l, i, flags, all, &m, u, sum, booked);
+    vgcm_force_apply(l->c, i, &m, sum);
+    return true;
 }
 
 VGCM_INLINE void finish_block(struct loop *l, int flags, struct block *b, struct booked *booked)
 {
     double *gap = l->c->gap + b->i;
-    if (brc_lanes_any(b->points))
+    if (brc_lanes_any(b->points)) {
         sum_points(l, flags, b, booked);
+        if (!(flags & VGCM_VISCOUS))
+            hold_rows(l, flags, b);
+    }
     for (int k = 0; k < VGCM_N_MOTION; k++)
         b->sum[k] = brc_lanes_where(b->facet, b->sum[k]);
     vgcm_force_apply(l->c, b->i, &b->m, b->sum);
-    brc_lanes_put(gap, brc_lanes_pick(b->facet, b->opening, brc_lanes_at(gap)));
+    brc_lanes_put(gap, brc_lanes_pick(b->facet, b->u[VGCM_OPEN], brc_lanes_at(gap)));
 }
 
 VGCM_INLINE void finish_batch(struct loop *l, int flags, struct batch *batch, struct booked *booked)
@@ -245,6 +285,12 @@ VGCM_INLINE void finish_batch(struct loop *l, int flags, struct batch *batch, st
     for (int k = 0; k < batch->n_blocks; k++)
         finish_block(l, flags, &batch->block[k], booked);
     batch->n_blocks = 0;
+}
+
+VGCM_INLINE bool are_affine(const struct loop *l, size_t i)
+{
+    static const uint8_t affine[BRC_LANES] = {VGCM_AFFINE, VGCM_AFFINE, VGCM_AFFINE, VGCM_AFFINE};
+    return i + BRC_LANES <= l->c->n && memcmp(l->f->phase + i, affine, sizeof affine) == 0;
 }
 
 /* One term of the points' energies. */
@@ -269,17 +315,23 @@ VGCM_INLINE void forces_loop(struct brc_sim *sim, const struct vgcm_law *law, co
                      .p = vgcm_point_columns(&sim->pairs)};
     struct booked booked = {.spheres = {0}};
     struct batch batch;
+    bool has_spheres = false;
     batch.n_blocks = batch.n_items = 0;
     for (size_t i = 0; i < l.c->n; i += BRC_LANES) {
+        fetch_ahead(&l, i);
+        if (are_affine(&l, i) && affine_block(&l, i, flags, &booked))
+            continue;
         brc_mask inside = brc_lanes_first((int64_t)(l.c->n - i));
         brc_mask facet = inside & ~brc_lanes_equal(l.f->phase + i, VGCM_SPHERE);
         brc_mask affine = inside & brc_lanes_equal(l.f->phase + i, VGCM_AFFINE);
         if (brc_lanes_any(facet))
             begin_block(&l, i, flags, facet, affine, &batch, &booked);
-        if (batch.n_blocks == BLOCKS || i + BRC_LANES >= l.c->n)
+        has_spheres |= brc_lanes_any(inside & ~facet);
+        if (batch.n_blocks == BLOCKS)
             finish_batch(&l, flags, &batch, &booked);
     }
-    for (size_t i = 0; i < l.c->n; i++)
+    finish_batch(&l, flags, &batch, &booked);
+    for (size_t i = 0; has_spheres && i < l.c->n; i++)
         if (l.f->phase[i] == VGCM_SPHERE)
             sphere_row(&l, i, flags, &booked);
     if (flags & VGCM_LEDGER) {

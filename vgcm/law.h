@@ -71,9 +71,12 @@ struct vgcm_point_wide {
     brc_wide damage_old;     /* dn + ds before the step */
     brc_wide pull_old, pull; /* m, normal force, tension positive */
     brc_wide secant;         /* m, tension at the peak strength, by the secant */
+    brc_wide s_old, t_old;   /* m, shear force on b before the step */
     brc_wide s, t;           /* m, trial shear force on b */
     brc_wide force2, force;  /* m2, m: its square and size */
     brc_wide part;           /* of it that is left */
+    bool slides;             /* some of them do; else force is not set */
+    brc_wide_mask loose;     /* were broken and open before the step */
 };
 
 /* What is added up over steps [J]. */
@@ -205,10 +208,16 @@ VGCM_INLINE void vgcm_wide_open(const struct vgcm_law *law, const brc_wide bond[
 VGCM_INLINE void vgcm_wide_slide(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
                                  int flags, struct vgcm_point_wide *p)
 {
-    brc_wide force = brc_wide_sqrt(p->force2), inv = 1 / force, e0 = bond[VGCM_E0];
-    brc_wide damage = p->dn + p->ds, strength = vgcm_wide_strength(law, flags, damage);
-    brc_wide limit = vgcm_wide_limit(law, e0, vgcm_wide_pull(p->un, p->secant, strength), strength);
-    brc_wide_mask cut = brc_wide_less(limit, force);
+    brc_wide e0 = bond[VGCM_E0], damage = p->dn + p->ds;
+    brc_wide strength = vgcm_wide_strength(law, flags, damage);
+    p->pull = vgcm_wide_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
+    brc_wide limit = vgcm_wide_limit(law, e0, p->pull, strength);
+    brc_wide_mask cut = brc_wide_less(limit * limit, p->force2);
+    p->part = brc_wide_all(1);
+    p->slides = brc_wide_any(cut);
+    if (!p->slides)
+        return;
+    brc_wide force = brc_wide_sqrt(p->force2), inv = 1 / force;
     brc_wide_mask weakened = brc_wide_both(cut, vgcm_wide_whole(damage));
     if (flags & VGCM_BRITTLE)
         p->ds = brc_wide_pick(weakened, brc_wide_all(1), p->ds);
@@ -218,7 +227,7 @@ VGCM_INLINE void vgcm_wide_slide(const struct vgcm_law *law, const brc_wide bond
     p->pull = vgcm_wide_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
     limit = vgcm_wide_limit(law, e0, p->pull, strength);
     p->force = force;
-    p->part = brc_wide_pick(cut, limit * inv, brc_wide_all(1));
+    p->part = brc_wide_pick(cut, limit * inv, p->part);
 }
 
 /* Energies of a step in which some point is broken: what the others keep in their bonds; contact
@@ -235,11 +244,11 @@ VGCM_INLINE void vgcm_wide_account_broken(brc_wide_mask was, brc_wide_mask is, b
     e->shear += area * brc_wide_pick(is, none, stored[1] - brc_wide_pick(was, none, old[1]));
 }
 
-/* Energies of a step, by the trapezoid rule for each force, see common/ledger.h; ds, dt: its slip.
- * Returns what points that were whole have lost [J]. */
+/* Energies of a step, by the trapezoid rule for each force, see common/ledger.h. Returns what
+ * points that were whole have lost [J]. */
 VGCM_INLINE brc_wide vgcm_wide_account(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
-                                       int flags, brc_wide area, brc_wide slip_s, brc_wide slip_t,
-                                       const struct vgcm_point_wide *p, struct vgcm_energy_wide *e)
+                                       int flags, brc_wide area, const struct vgcm_point_wide *p,
+                                       struct vgcm_energy_wide *e)
 {
     brc_wide none = brc_wide_all(0), half_kn = bond[VGCM_HALF_KN], half_ks = bond[VGCM_HALF_KS];
     brc_wide damage = p->dn + p->ds;
@@ -247,21 +256,27 @@ VGCM_INLINE brc_wide vgcm_wide_account(const struct vgcm_law *law, const brc_wid
     brc_wide stored = half_kn * (p->pull * p->un), stored_old = half_kn * (p->pull_old * p->un_old);
     brc_wide excess = half_kn * (p->pull_old * p->un - p->pull * p->un_old); /* work - stored */
     brc_wide_mask weakened = brc_wide_both(was, brc_wide_less(p->damage_old, damage));
-    brc_wide loss = brc_wide_where(weakened, excess);
-    /* the plastic slip is along the trial force, of which 1 - part is cut off */
-    brc_wide s_old = p->s + slip_s, t_old = p->t + slip_t;
-    brc_wide off = 1 - p->part, left2 = p->part * p->force2;
-    brc_wide slid = half_ks * (off * (s_old * p->s + t_old * p->t + left2));
-    brc_wide push = brc_wide_max(-p->pull, none);
-    brc_wide rub = (2 * law->mu) * half_kn * (push * (off * p->force));
-    rub = brc_wide_pick(was, brc_wide_min(rub, brc_wide_max(slid, none)), slid);
-    brc_wide lost = area * (loss + slid);
+    brc_wide loss = brc_wide_where(weakened, excess), lost = area * loss, left2 = p->force2;
+    if (p->slides) {
+        /* the plastic slip is along the trial force, of which 1 - part is cut off */
+        brc_wide off = 1 - p->part;
+        left2 *= p->part;
+        brc_wide slid = half_ks * (off * (p->s_old * p->s + p->t_old * p->t + left2));
+        brc_wide push = brc_wide_max(-p->pull, none);
+        brc_wide rub = (2 * law->mu) * half_kn * (push * (off * p->force));
+        rub = area * brc_wide_pick(was, brc_wide_min(rub, brc_wide_max(slid, none)), slid);
+        left2 *= p->part;
+        lost += area * slid;
+        if (flags & VGCM_LEDGER) {
+            e->damage -= rub;
+            e->friction += rub;
+        }
+    }
     if (flags & VGCM_LEDGER) {
-        brc_wide shear = half_ks * (p->part * left2);
-        brc_wide shear_old = half_ks * (s_old * s_old + t_old * t_old);
+        brc_wide shear = half_ks * left2;
+        brc_wide shear_old = half_ks * (p->s_old * p->s_old + p->t_old * p->t_old);
         brc_wide kept = stored - stored_old + (excess - loss) + (shear - shear_old);
-        e->damage += lost - area * rub;
-        e->friction += area * rub;
+        e->damage += lost;
         if (brc_wide_any(brc_wide_not(is))) {
             const brc_wide all[2] = {stored, shear}, old[2] = {stored_old, shear_old};
             vgcm_wide_account_broken(was, is, area, kept, all, old, stored - stored_old + excess,
@@ -293,6 +308,8 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
                                 .un = brc_wide_all(p->un + du[0]), /* eq:vgcm:14 */
                                 .un_old = brc_wide_all(p->un),
                                 .damage_old = brc_wide_all(p->dn + p->ds),
+                                .s_old = brc_wide_all(p->fs * inv),
+                                .t_old = brc_wide_all(p->ft * inv),
                                 .s = brc_wide_all(s),
                                 .t = brc_wide_all(t),
                                 .force2 = brc_wide_all(s * s + t * t)};
@@ -301,8 +318,7 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
     vgcm_wide_bond_of(bond, all);
     vgcm_wide_open(bond->law, all, flags, &q);
     vgcm_wide_slide(bond->law, all, flags, &q);
-    p->lost += vgcm_wide_account(bond->law, all, flags, brc_wide_all(area), brc_wide_all(du[1]),
-                                 brc_wide_all(du[2]), &q, &sum)[0];
+    p->lost += vgcm_wide_account(bond->law, all, flags, brc_wide_all(area), &q, &sum)[0];
     p->un = q.un[0];
     p->fn = kn * q.pull[0];
     p->fs = ks * (q.part[0] * s);
@@ -321,10 +337,10 @@ static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const
                                 struct vgcm_point *p, struct vgcm_energy *e)
 {
     double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
-    double fn_old = kn * fmin(p->un, 0), s_old = p->fs, t_old = p->ft;
+    double fn_old = p->un < 0 ? kn * p->un : 0, s_old = p->fs, t_old = p->ft;
     double s = s_old - ks * du[1], t = t_old - ks * du[2];
     p->un += du[0];
-    p->fn = kn * fmin(p->un, 0);
+    p->fn = p->un < 0 ? kn * p->un : 0;
     double limit = -bond->law->mu * p->fn, force2 = s * s + t * t;
     double part = limit * limit < force2 ? limit / sqrt(force2) : 1;
     p->fs = part * s;

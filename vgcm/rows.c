@@ -423,7 +423,7 @@ static int update_rows(struct brc_sim *sim, const struct vgcm_law *law, struct b
         if (c->np[i] == 0 && vgcm_columns(c)->phase[i] == VGCM_SPHERE)
             code = sphere_row(sim, law, c, i);
     BRC_TRY(code);
-    return same ? 0 : brc_contacts_compact(sim->ctx, c);
+    return brc_contacts_tidy(sim->ctx, c);
 }
 
 int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,

@@ -56,25 +56,40 @@ struct vgcm_bodies {
 
 /* A row is a sphere contact (new neighbours), or a facet. The displacement of a facet's points is
  * the affine field u: exact, not an approximation, as each point's increment is affine in its
- * place. While no point has been damaged nothing else is kept; then its plastic slip and damage. */
+ * place. While no point has been damaged nothing else is kept; then its plastic slip and damage.
+ * The slip of a broken point that is open is not kept: it is the whole displacement. */
 enum vgcm_phase { VGCM_SPHERE, VGCM_AFFINE, VGCM_POINTS };
 
 /* order of generalised displacements and forces in the contact frame */
 enum { VGCM_OPEN, VGCM_S, VGCM_T, VGCM_TWIST, VGCM_BEND_S, VGCM_BEND_T, VGCM_N_MOTION };
 /* order of the area moments about the reference point: sums of A, A s, A t, A s s, A s t, A t t */
 enum { VGCM_A, VGCM_A_S, VGCM_A_T, VGCM_A_SS, VGCM_A_ST, VGCM_A_TT, VGCM_N_MOMENTS };
+/* order of what makes the forces of points that rest: the moments of the areas that are left for
+ * normal forces; of whole points A, A s, A t, A (s s + t t), and the generalised plastic slip */
+enum {
+    VGCM_HELD_A = VGCM_N_MOMENTS,
+    VGCM_HELD_A_S,
+    VGCM_HELD_A_T,
+    VGCM_HELD_POLAR,
+    VGCM_HELD_SLIP_S,
+    VGCM_HELD_SLIP_T,
+    VGCM_HELD_SLIP_TWIST,
+    VGCM_N_HELD
+};
 
-#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR)                                                       \
-    SCALAR(uint8_t, phase, BRC_STATE, "1", "0 sphere contact, 1 affine facet, 2 facet of points") \
-    SCALAR(double, kn, BRC_STATE, "Pa m-1", "normal stiffness per unit area")                     \
-    SCALAR(double, plane, BRC_STATE, "m", "facet plane at d/2 + plane from a along n")            \
-    SCALAR(double, rim, BRC_STATE, "m", "largest distance of a point from the reference point")   \
-    SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0")   \
-    VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")     \
-    VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")        \
-    VECTOR(double, u, 6, BRC_STATE, "m, 1", "facets: opening, slip s t, turn about n s t")        \
-    VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt")   \
-    VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")
+#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR)                                                        \
+    SCALAR(uint8_t, phase, BRC_STATE, "1", "0 sphere contact, 1 affine facet, 2 facet of points")  \
+    SCALAR(double, kn, BRC_STATE, "Pa m-1", "normal stiffness per unit area")                      \
+    SCALAR(double, plane, BRC_STATE, "m", "facet plane at d/2 + plane from a along n")             \
+    SCALAR(double, rim, BRC_STATE, "m", "largest distance of a point from the reference point")    \
+    SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0")    \
+    VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")      \
+    VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")         \
+    VECTOR(double, u, 6, BRC_STATE, "m, 1", "facets: opening, slip s t, turn about n s t")         \
+    VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt")    \
+    VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")          \
+    SCALAR(double, slack, BRC_STATE, "m", "points: motion in which none of them changes; 0: some") \
+    VECTOR(double, held, 13, BRC_STATE, "m2, m3, m4", "points with slack: sums for their forces")
 
 struct vgcm_contacts {
     VGCM_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3)

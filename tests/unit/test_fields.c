@@ -93,6 +93,10 @@ static void shrunk_rows_come_back_as_zero(void **state)
     CHECK_NEAR(f->things.mass[2], 3, 0, 0);
     CHECK_NEAR(f->things.mass[3], 0, 0, 0);
     CHECK_NEAR(f->things.x[11][2], 0, 0, 0);
+    fill(f, 12);
+    CHECK_OK(&f->ctx, brc_table_resize(&f->ctx, &f->table, 3));
+    CHECK_OK(&f->ctx, brc_table_resize(&f->ctx, &f->table, 5));
+    CHECK_NEAR(f->things.mass[7], 0, 0, 0); /* room up to a multiple of four */
 }
 
 static void gather_takes_the_rows_asked_for(void **state)
