@@ -21,9 +21,10 @@ static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_
 /* Adaptive loading: the rate follows log(target / unbalanced) by this gain a step, and rises and
  * falls by these parts a step at most. */
 static const double RATE_GAIN = 0.05, RATE_RISE = 0.03, RATE_FALL = 0.05;
-/* Largest strain of a step over the strain so far; the automatic smallest one, over the target too;
- * how much faster that is when the load has fallen to this part of its peak. */
-static const double FASTEST = 0.03, SLOWEST = 1.0 / 16, PAST_PEAK = 3, PEAK_PASSED = 0.9;
+/* Largest strain of a step, and the automatic smallest one, over the strain so far and the target;
+ * how much faster that is when the load has fallen to this part of its peak. Before a sudden
+ * failure nothing tells the rig to slow down: the largest one is what its load is off by. */
+static const double FASTEST = 0.5, SLOWEST = 1.0 / 16, PAST_PEAK = 3, PEAK_PASSED = 0.9;
 /* The start is settled when the unbalanced force is below its target and this, or after so many
  * steps. */
 static const double SETTLED = 0.01;
@@ -159,7 +160,8 @@ static void choose_change(struct brc_sim *sim)
     struct brc_rig *rig = &sim->rig;
     double room = log(rig->params.target / fmax(rig->unbalanced, DBL_MIN));
     double rate = rig->rate * exp(UNBALANCED_STEPS * fmin(RATE_GAIN * room, RATE_RISE));
-    rate = fmin(fmax(rate, smallest_rate(sim)), FASTEST * rig->strain / sim->dt);
+    rate =
+        fmin(fmax(rate, smallest_rate(sim)), FASTEST * rig->params.target * rig->strain / sim->dt);
     rate = fmin(fmax(rate, rig->params.rate_min), rig->params.rate_max);
     rig->change = clip(log(rate / rig->rate) / UNBALANCED_STEPS, RATE_FALL);
 }

@@ -5,13 +5,13 @@
 
 #include <stdio.h>
 
-/* A scalar of the contact that each model's message must show, one that spoils its force, and what
+/* A scalar of the contact that each model's message must show, a column that spoils its force, and what
  * leaves nothing but bonds that never break: no place for energy to go. */
 static const struct spoilt {
     const char *model, *shown, *spoils, *unbreakable;
 } spoilt[] = {
     {"vgcm", ", phase ", "kn", "softening: none; sigma_t: 1e9 GPa; tau: 1e9 GPa"},
-    {"polyhedra", ", room ", "area", "breakable: off; gn: 0 1/s; mu: 0; kn: 1 N/m; kt: 0 N/m"}};
+    {"polyhedra", ", room ", "bond", "breakable: off; gn: 0 1/s; mu: 0; kn: 1 N/m; kt: 0 N/m"}};
 enum { N_MODELS = sizeof spoilt / sizeof spoilt[0] };
 
 static const struct brc_model *model_of(int i)
@@ -94,7 +94,7 @@ static void spoil(struct fixture *f, const char *name, size_t row)
     struct brc_table *t = &f->sim.pairs.model;
     for (int k = 0; k < t->set.n; k++)
         if (strcmp(t->set.fields[k].name, name) == 0)
-            ((double *)brc_table_column(t, k))[row] = NAN;
+            ((double *)brc_table_column(t, k))[row * (size_t)t->set.fields[k].width] = NAN;
 }
 
 /* A contact whose force is no number is named in the step that computes it, by both bodies. */
