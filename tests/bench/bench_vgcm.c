@@ -182,7 +182,7 @@ static double strength(struct brc_context *ctx, const struct brc_specimen *speci
  * larger loading target. BENCH_REFERENCE=1 runs slow loading too (minutes). */
 static void time_compression(struct brc_context *ctx, const struct brc_specimen *specimen)
 {
-    const char *const run[] = {"local_damping", "0.2", "mass_margin", "0.45", NULL};
+    const char *const run[] = {"local_damping", "0.2", "mass_margin", "0.5", NULL};
     const char *const test[] = {"target", "0.008", NULL};
     const char *const slow_run[] = {NULL};
     const char *const slow[] = {"loading", "fixed", "rate", "2e-7 1/s", "stop_drop", "0.8", NULL};
