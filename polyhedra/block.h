@@ -35,6 +35,7 @@ struct poly_row_group {
     brc_lanes broken;                    /* > 1: the bond breaks */
     brc_lanes k[3], gap;
     struct poly_wrenches bond;
+    brc_lanes bond_stored;                          /* J, where rows may be condensed */
     brc_lanes stored, slid;                         /* J, of the tangential springs */
     brc_lanes work_normal, work_bond, work_viscous; /* J */
 };
@@ -57,15 +58,16 @@ enum {
 /* A point's spring (struct poly_points), in one line of the cache. */
 enum { POLY_XI = 0, POLY_WEIGHT = 3, POLY_NORMAL = 4, POLY_SPRING = 8 };
 
-/* Motion of a row since its springs were computed (struct poly_rows, shift): displacement of b
- * relative to a at the centre of a, path, turn of b relative to a, path at which they are computed
- * anew (0: at each step), a quarter of the sum of both turns. */
+/* Motion of a row since it was computed literally (struct poly_rows, shift): displacement of b
+ * relative to a at the centre of a, path, turn of b relative to a, path at which it is computed
+ * anew (0: at each step), a quarter of the sum of both turns; what its bond stored then. */
 enum {
     POLY_SHIFT_PATH = 3,
-    POLY_SHIFT_TURN = 4,
+    POLY_SHIFT_TURN,
     POLY_SHIFT_END = 7,
     POLY_SHIFT_BOTH,
-    POLY_SHIFT = 12
+    POLY_SHIFT_STORED = 11,
+    POLY_SHIFT
 };
 
 /* What a point's touch is computed from (struct poly_points, item): numbers of st->world and
@@ -143,6 +145,7 @@ struct poly_block {
     double kn, kt, stiff; /* N/m; stiff: the larger one of those that act */
     double limit;         /* of xi per overlap */
     double rest, ell, skin;
+    bool viscous;
     int32_t n_rows, n_points, n_apart;
     int32_t n_ahead, ahead[POLY_ROWS];                  /* rows of the next block */
     int32_t row[POLY_ROWS], a[POLY_ROWS], b[POLY_ROWS]; /* filled up to whole groups */

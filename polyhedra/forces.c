@@ -62,6 +62,19 @@ void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, s
     }
 }
 
+/* Where rows may be condensed, the works of bonds are not booked by themselves: what the bond of a
+ * row has gained since it was computed last is part of the work of all that acts. */
+static void account_bond(struct brc_sim *sim, size_t row, double stored)
+{
+    const struct poly_rows *rows = sim->pairs.model_columns;
+    double gained = stored - rows->shift[row][POLY_SHIFT_STORED];
+    rows->shift[row][POLY_SHIFT_STORED] = stored;
+    if (!BRC_OPTION(sim->run.ledger))
+        return;
+    sim->ledger.bond += gained;
+    sim->ledger.contact_normal -= gained;
+}
+
 /* A broken bond: its force is gone at once. What it had stored, less the work that its last force
  * would have done in this step, is dissipated. */
 __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size_t row,
@@ -84,6 +97,8 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
     brc_copy(event.n, r->n);
     c->status[row] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);
+    if (poly_is_condensed(sim))
+        account_bond(sim, row, event.energy);
     if (BRC_OPTION(sim->run.ledger)) {
         sim->ledger.damage += event.energy;
         sim->ledger.bond -= event.energy;
@@ -132,14 +147,15 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_block *block, bool condensed)
         fetch(c->ta[row], sizeof c->ta[row]);
         fetch(c->tb[row], sizeof c->tb[row]);
         fetch(c->k[row], sizeof c->k[row]);
-        fetch(rows->bond[row], sizeof rows->bond[row]);
         fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
-        fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
-        if (!condensed)
-            continue;
-        fetch(rows->shift[row], sizeof rows->shift[row]);
-        fetch(rows->held[row], sizeof rows->held[row]);
-        fetch(rows->tangent[row], sizeof rows->tangent[row]);
+        if (condensed) {
+            fetch(rows->shift[row], sizeof rows->shift[row]);
+            fetch(rows->held[row], sizeof rows->held[row]);
+            fetch(rows->tangent[row], sizeof rows->tangent[row]);
+        } else {
+            fetch(rows->bond[row], sizeof rows->bond[row]);
+            fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
+        }
     }
 }
 
@@ -151,6 +167,8 @@ BRC_LANES_INLINE void fetch_points(const struct poly_block *block)
     for (int32_t i = 0; i < block->n_ahead; i++) {
         int32_t row = block->ahead[i];
         size_t p = (size_t)c->p0[row], n = (size_t)rows->awake[row];
+        if (rows->shift[row][POLY_SHIFT_PATH] < rows->shift[row][POLY_SHIFT_END])
+            continue;
         __builtin_prefetch(points->sleep + p + n);
         if (n == 0)
             continue;
@@ -217,29 +235,90 @@ static int prepare_row(struct poly_block *block, int32_t i)
     return 0;
 }
 
-/* A bonded row whose springs have all been computed, and all touch, is condensed until it has moved
- * by the path for which they stay what they are. */
-static void condense_row(struct poly_block *block, int32_t i)
+/* Adds force and moment of a bond, and its slope, to what is carried along. */
+static void hold_bond(const struct poly_block *block, int32_t i, double held[6],
+                      double (*tangent)[6])
 {
     const struct brc_sim *sim = block->sim;
-    const struct poly_rows *rows = sim->pairs.model_columns;
     const struct poly_params *p = poly_params_of(sim);
     size_t row = (size_t)block->row[i];
-    double *shift = rows->shift[row], path = block->group[i / BRC_LANES].path[i % BRC_LANES];
+    struct poly_bond bond = poly_bond_of(p, sim->pairs.model_columns, row);
+    struct poly_bond_pose pose;
+    struct poly_bond_result r;
+    double arm[3], moment[3];
+    poly_pose_bond(&pose, &sim->pairs, row, block->st, &sim->bodies, p->torsion);
+    poly_bond_law(&r, &bond, &pose, p->torsion);
+    brc_sub(arm, r.x, sim->bodies.x[block->a[i]]);
+    brc_cross(moment, arm, r.f);
+    for (int k = 0; k < 3; k++) {
+        held[k] += r.f[k];
+        held[3 + k] += moment[k] + r.m * r.n[k];
+    }
+    double kn = r.term[0] > 0 ? bond.kn : 0;
+    for (int j = 0; j < 6; j++) {
+        double unit[3] = {j % 3 == 0, j % 3 == 1, j % 3 == 2}, d[3], f[3];
+        if (j < 3)
+            brc_copy(d, unit);
+        else
+            brc_cross(d, unit, arm);
+        double along = brc_dot(d, r.n);
+        for (int k = 0; k < 3; k++)
+            f[k] = kn * along * r.n[k] + bond.kt * (d[k] - along * r.n[k]);
+        brc_cross(moment, arm, f);
+        for (int k = 0; k < 3; k++) {
+            tangent[k][j] += f[k];
+            tangent[3 + k][j] += moment[k];
+            if (j >= 3)
+                tangent[3 + k][j] += bond.ktheta * r.n[j - 3] * r.n[k];
+        }
+    }
+}
+
+/* Relative path of a row before its bond can break: strains change by twice the path over the
+ * strain length at most, the twist by the path over the reach of b. */
+static double path_to_break(const struct poly_block *block, int32_t i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    double length = *poly_bond_length(rows, (size_t)block->row[i]);
+    double slope = 2 / (length * p->eps_th);
+    if (p->torsion && p->theta_limit)
+        slope += 1 / (block->sim->bodies.reach[block->b[i]] * p->theta_th);
+    return p->breakable ? (1 - block->group[i / BRC_LANES].broken[i % BRC_LANES]) / slope
+                        : HUGE_VAL;
+}
+
+/* A bonded row that has been computed literally, and whose springs all touch, is condensed until it
+ * has moved by the path for which they stay what they are. */
+static void condense_row(struct poly_block *block, int32_t i)
+{
+    struct brc_sim *sim = block->sim;
+    const struct poly_rows *rows = sim->pairs.model_columns;
+    const struct poly_params *p = poly_params_of(sim);
+    const struct poly_row_group *g = &block->group[i / BRC_LANES];
+    size_t row = (size_t)block->row[i];
+    bool is_intact = sim->pairs.status[row] == BRC_INTACT;
+    double *shift = rows->shift[row], stored = is_intact ? g->bond_stored[i % BRC_LANES] : 0;
+    if (is_intact)
+        account_bond(sim, row, stored);
+    memset(shift, 0, sizeof rows->shift[row]);
+    shift[POLY_SHIFT_STORED] = stored;
+    if (!is_intact || !block->listed[i] || block->open[i])
+        return;
     double end = poly_least(p->intact_path * p->radius, block->loosest[i]);
     end = poly_least(end, rows->room[row] - rows->calm[row]);
-    memset(shift, 0, sizeof rows->shift[row]);
-    if (sim->pairs.status[row] != BRC_INTACT || !block->listed[i] || rows->awake[row] == 0 ||
-        block->open[i] || end < CONDENSE * path)
+    end = poly_least(end, path_to_break(block, i));
+    if (end < CONDENSE * g->path[i % BRC_LANES])
         return;
     shift[POLY_SHIFT_END] = end;
     for (int k = 0; k < 6; k++)
         rows->held[row][k] = block->sum[i][POLY_SUM_NORMAL + k] + block->sum[i][POLY_SUM_SHEAR + k];
     memcpy(rows->tangent[row], block->tangent[i], sizeof rows->tangent[row]);
+    hold_bond(block, i, rows->held[row], (double(*)[6])rows->tangent[row]);
 }
 
 /* Stiffness of row i of the block; works into the ledger. */
-static void store_row(struct poly_block *block, int32_t i, bool viscous)
+static void store_row(struct poly_block *block, int32_t i)
 {
     struct brc_sim *sim = block->sim;
     struct brc_contacts *c = &sim->pairs;
@@ -254,7 +333,7 @@ static void store_row(struct poly_block *block, int32_t i, bool viscous)
         return;
     sim->ledger.contact_normal += g->work_normal[lane];
     sim->ledger.bond += g->work_bond[lane];
-    if (viscous)
+    if (block->viscous)
         sim->ledger.viscous += g->work_viscous[lane];
     sim->ledger.contact_shear += g->stored[lane];
     sim->ledger.friction += g->slid[lane] - g->stored[lane];
@@ -263,7 +342,8 @@ static void store_row(struct poly_block *block, int32_t i, bool viscous)
 static void open_block(struct poly_block *block, struct brc_sim *sim, struct poly_state *st)
 {
     struct poly_spring_law law = poly_pair_law(sim);
-    double radius = poly_params_of(sim)->radius;
+    const struct poly_params *p = poly_params_of(sim);
+    double radius = p->radius;
     block->sim = sim;
     block->st = st;
     block->kn = law.kn;
@@ -275,6 +355,7 @@ static void open_block(struct poly_block *block, struct brc_sim *sim, struct pol
     block->skin = POLY_LIST_SKIN * radius;
     block->pair_row = -1;
     block->n_points = 0;
+    block->viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
     memset(block->held, 0, sizeof block->held);
     memset(block->n_tasks, 0, sizeof block->n_tasks);
 }
@@ -283,8 +364,6 @@ void poly_forces(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
     struct poly_block *block = st->block;
-    const struct poly_params *p = poly_params_of(sim);
-    bool viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
     bool condensed = poly_is_condensed(sim);
     poly_world(sim, st);
     open_block(block, sim, st);
@@ -307,7 +386,7 @@ void poly_forces(struct brc_sim *sim, void *state)
         poly_work_off(block);
         st->kernels.finish(block);
         for (int32_t i = 0; i < block->n_rows; i++) {
-            store_row(block, i, viscous);
+            store_row(block, i);
             if (condensed && !block->held[i])
                 condense_row(block, i);
         }

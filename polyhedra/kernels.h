@@ -370,12 +370,13 @@ BRC_LANES_INLINE brc_lanes work(double (*old)[6], const struct poly_wrenches *no
 
 BRC_LANES_INLINE void works_of_group(struct poly_block *block, struct poly_row_group *g,
                                      const int32_t *row, const struct poly_wrenches *normal,
-                                     const struct poly_wrenches *sticky, const bool viscous)
+                                     const struct poly_wrenches *sticky, const bool viscous,
+                                     const bool condensed)
 {
     const struct poly_rows *rows = block->sim->pairs.model_columns;
     double dt = block->sim->dt;
     g->work_normal = work(rows->normal_old, normal, g, row, dt);
-    g->work_bond = work(rows->bond_old, &g->bond, g, row, dt);
+    g->work_bond = condensed ? brc_lanes_all(0) : work(rows->bond_old, &g->bond, g, row, dt);
     if (viscous)
         g->work_viscous = work(rows->viscous_old, sticky, g, row, dt);
 }
@@ -414,11 +415,11 @@ BRC_LANES_INLINE void finish_group(struct poly_block *block, int32_t group, cons
     g->stored = s[POLY_SUM_STORED];
     g->slid = s[POLY_SUM_SLID];
     for (int k = 0; k < 3 && condensed; k++) {
-        normal.f[k] += s[POLY_SUM_SHEAR + k];
-        normal.m[k] += s[POLY_SUM_SHEAR + 3 + k];
+        normal.f[k] = f[k];
+        normal.m[k] = -ta[k];
     }
     if (ledger)
-        works_of_group(block, g, row, &normal, &sticky, viscous);
+        works_of_group(block, g, row, &normal, &sticky, viscous, condensed);
     if (condensed)
         g->work_normal -= g->slid;
 }

@@ -118,7 +118,9 @@ BRC_LANES_INLINE void motion_of_group(const struct poly_block *block, struct pol
     set(f->xa, xa[0], xa[1], xa[2]);
     set(f->x, g->x[0], g->x[1], g->x[2]);
     slip_of_row(f, g, block->sim->dt);
-    viscosities(f, block, i);
+    f->gn = f->gt = brc_lanes_all(0);
+    if (block->viscous)
+        viscosities(f, block, i);
     g->path = relative_path(g, gather(bodies->reach, i->a),
                             gather(bodies->reach, i->b) + block->rest, block->sim->dt);
 }
@@ -195,7 +197,7 @@ BRC_LANES_INLINE brc_lanes twist(const brc_lanes n[3], const brc_lanes ta[3], co
     return angle;
 }
 
-/* poly_bond_law of four bonds into the group: wrench, stiffness, breaking. */
+/* poly_bond_law of four bonds into the group: wrench, energy, stiffness, breaking. */
 BRC_LANES_INLINE void bond_law(struct poly_row_group *g, const struct bonds *bond,
                                const struct poly_params *p, const brc_lanes pa[3],
                                const brc_lanes pb[3], const brc_lanes n[3], brc_lanes twisted)
@@ -214,6 +216,8 @@ BRC_LANES_INLINE void bond_law(struct poly_row_group *g, const struct bonds *bon
     brc_lanes slip = brc_lanes_sqrt(brc_lanes_dot(ut, ut));
     g->broken = open / limit + slip / limit;    /* eq:gt12:15 */
     brc_lanes moment = -bond->ktheta * twisted; /* eq:gt12:14 */
+    g->bond_stored =
+        0.5 * (bond->kn * open * open + bond->kt * slip * slip + bond->ktheta * twisted * twisted);
     if (p->theta_limit)
         g->broken += brc_lanes_abs(twisted) / p->theta_th;
     sub(back, arm, g->x);
@@ -282,9 +286,9 @@ BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_g
 
 /* --- condensed rows --------------------------------------------------------------------------- */
 
-/* Motion of four rows since their springs were computed, as POLY_SHIFT has it. */
+/* Motion of four rows since they were computed literally, as POLY_SHIFT has it. */
 struct shifts {
-    brc_lanes d[3], path, turn[3], end, both[3], none;
+    brc_lanes d[3], path, turn[3], end, both[3], stored;
 };
 
 /* Adds the motion of the step, and makes the frames those of the motion since then: slip and slope
@@ -306,7 +310,7 @@ BRC_LANES_INLINE void add_shift(struct shifts *s, struct frames *f, const struct
     set(f->along[2].slope, -w[1], w[0], none);
 }
 
-/* Force and moment of the springs of four rows: what they were, turned with the pair, less the
+/* Force and moment of four rows: what they were, turned with the pair, less the
  * tangent times the motion. */
 BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *rows,
                                      const struct shifts *s, const int32_t row[BRC_LANES])
@@ -330,9 +334,9 @@ BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *row
 }
 
 /* Rows that stay condensed in this step have their forces from the tangent; the points of the
- * others are computed with the motion since they were computed last. */
-BRC_LANES_INLINE void hold_group(struct poly_block *block, int32_t group, struct frames *f,
-                                 const struct numbers *i)
+ * others are computed with the motion since they were computed last. Returns which stay. */
+BRC_LANES_INLINE brc_mask hold_group(struct poly_block *block, int32_t group, struct frames *f,
+                                     const struct numbers *i)
 {
     const struct poly_row_group *g = &block->group[group];
     const struct poly_rows *rows = block->sim->pairs.model_columns;
@@ -344,8 +348,6 @@ BRC_LANES_INLINE void hold_group(struct poly_block *block, int32_t group, struct
     gather_fours(part, from, POLY_SHIFT);
     add_shift(&s, f, g, block->sim->dt);
     brc_mask held = brc_lanes_less(s.path, s.end);
-    if (poly_params_of(block->sim)->breakable)
-        held &= ~brc_lanes_less(brc_lanes_all(1), g->broken);
     clear(force, sizeof force);
     if (brc_lanes_any(held))
         tangent_forces(force, rows, &s, i->row);
@@ -362,6 +364,16 @@ BRC_LANES_INLINE void hold_group(struct poly_block *block, int32_t group, struct
         brc_lanes_put(block->sum[n], force[k]);
         brc_lanes_put(block->sum[n] + BRC_LANES, force[BRC_LANES + k]);
     }
+    return held;
+}
+
+/* The bonds of rows that are condensed count with their springs. */
+BRC_LANES_INLINE void leave_bonds(struct poly_row_group *g, brc_mask held)
+{
+    mask(g->bond.f, ~held, g->bond.f);
+    mask(g->bond.m, ~held, g->bond.m);
+    mask(g->k, ~held, g->k);
+    g->broken = brc_lanes_where(~held, g->broken);
 }
 
 BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion,
@@ -378,16 +390,20 @@ BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion
         bool has_bond = false;
         numbers_of(&i, block, group);
         motion_of_group(block, g, &f, &i);
+        brc_mask held = {0};
+        if (condensed)
+            held = hold_group(block, group, &f, &i);
         for (int k = 0; k < BRC_LANES; k++)
-            has_bond |= c->status[i.row[k]] == BRC_INTACT;
-        g->k[0] = g->k[1] = g->k[2] = g->broken = brc_lanes_all(0);
+            has_bond |= c->status[i.row[k]] == BRC_INTACT && !held[k];
+        g->k[0] = g->k[1] = g->k[2] = g->broken = g->bond_stored = brc_lanes_all(0);
         clear((brc_lanes *)&g->bond, sizeof g->bond);
         if (has_bond)
             bond_of_group(block, g, &i, torsion);
+        if (condensed && has_bond)
+            leave_bonds(g, held);
         rooms_of_group(block, g, group);
-        if (condensed)
-            hold_group(block, group, &f, &i);
-        put_frames(block->frame + BRC_LANES * group, &f);
+        if (!condensed || brc_lanes_any(~held))
+            put_frames(block->frame + BRC_LANES * group, &f);
     }
 }
 

@@ -43,9 +43,9 @@
            "feature pairs that are springs: all within reach, eq 1; feet strictly inside; each "  \
            "physical contact once, with a continuous force")                                      \
     CHOICE(intact, "literal|condensed", "literal",                                                \
-           "springs of bonded pairs: each at each step; or by their sum, linear in the motion "   \
-           "since all were computed")                                                             \
-    REAL(intact_path, "1", "0.001", "(0, 0.05]",                                                  \
+           "bonded pairs: bond and springs, each at each step; or their sum, linear in the "      \
+           "motion since all were computed")                                                      \
+    REAL(intact_path, "1", "0.005", "(0, 0.05]",                                                  \
          "condensed: relative path, in radii R, until all are computed anew")
 
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
@@ -66,12 +66,12 @@ struct poly_params {
     SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")      \
     VECTOR(double, bond, POLY_BOND, BRC_STATE, "m, 1, m2", "bond, in both frames (POLY_BOND)")  \
     VECTOR(double, shift, POLY_SHIFT, BRC_STATE, "m, 1",                                        \
-           "condensed: motion since the springs were computed (POLY_SHIFT)")                    \
+           "condensed: motion since all was computed (POLY_SHIFT)")                             \
     VECTOR(double, held, 6, BRC_STATE, "N, N m", "condensed: force and moment about a then")    \
     VECTOR(double, tangent, 36, BRC_STATE, "N m-1, N, N m", "condensed: their slope by motion") \
     VECTOR(double, bond_old, 6, BRC_STATE, "N, N m", "bond force on b, its moment about a")     \
     VECTOR(double, normal_old, 6, BRC_STATE, "N, N m",                                          \
-           "the same of the normal springs; condensed: of all springs")                         \
+           "the same of the normal springs; condensed: of all springs and the bond")            \
     VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m", "the same of the viscous forces")
 
 struct poly_rows {
