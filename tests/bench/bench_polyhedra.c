@@ -14,7 +14,7 @@
 
 extern const struct brc_model brc_model_polyhedra;
 
-enum { REPEATS = 60, SETTLED = 30, PEAK_STEPS = 400 };
+enum { REPEATS = 60, SETTLED = 30, PEAK_STEPS = 400, AFTERWARDS = 400 };
 
 static const char *const strong_bonds[][2] = {{NULL, NULL}}, *const weak_bonds[][2] = {
                                                                  {"eps_th", "0.001"}, {NULL, NULL}};
@@ -95,7 +95,7 @@ static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen,
     for (int i = 0; i < 1000; i++)
         must(ctx, brc_sim_step(&sim));
     slow_down(&sim);
-    for (int i = 0; i < 100; i++)
+    for (int i = 0; i < AFTERWARDS; i++)
         must(ctx, brc_sim_step(&sim));
     for (int i = 0; i < REPEATS; i++)
         bench_note(&t, step_seconds(&sim));
