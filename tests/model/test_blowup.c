@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-/* A scalar of the contact that each model's message must show, a column that spoils its force, and what
- * leaves nothing but bonds that never break: no place for energy to go. */
+/* A scalar of the contact that each model's message must show, a column that spoils its force, and
+ * what leaves nothing but bonds that never break: no place for energy to go. */
 static const struct spoilt {
     const char *model, *shown, *spoils, *unbreakable;
 } spoilt[] = {
