@@ -158,17 +158,6 @@ BRC_LANES_INLINE brc_lanes brc_lanes_sums(const brc_lanes a[BRC_LANES])
            __builtin_shufflevector(lo, hi, 2, 3, 6, 7);
 }
 
-/* Lane i of the result is the smallest lane of a[i]. */
-BRC_LANES_INLINE brc_lanes brc_lanes_mins(const brc_lanes a[BRC_LANES])
-{
-    brc_lanes lo = brc_lanes_min(__builtin_shufflevector(a[0], a[1], 0, 4, 2, 6),
-                                 __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7));
-    brc_lanes hi = brc_lanes_min(__builtin_shufflevector(a[2], a[3], 0, 4, 2, 6),
-                                 __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7));
-    return brc_lanes_min(__builtin_shufflevector(lo, hi, 0, 1, 4, 5),
-                         __builtin_shufflevector(lo, hi, 2, 3, 6, 7));
-}
-
 /* Lane i of r[j] becomes lane j of r[i]. */
 BRC_LANES_INLINE void brc_lanes_transpose(brc_lanes r[BRC_LANES])
 {

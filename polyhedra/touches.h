@@ -12,13 +12,6 @@ BRC_LANES_INLINE brc_lanes gather(const double *column, const int32_t i[BRC_LANE
     return (brc_lanes){column[i[0]], column[i[1]], column[i[2]], column[i[3]]};
 }
 
-/* One lane of a vector in all lanes. */
-BRC_LANES_INLINE void spread(brc_lanes r[3], const brc_lanes x[3], int lane)
-{
-    for (int k = 0; k < 3; k++)
-        r[k] = brc_lanes_all(x[k][lane]);
-}
-
 BRC_LANES_INLINE void set(brc_lanes r[3], brc_lanes x, brc_lanes y, brc_lanes z)
 {
     r[0] = x;

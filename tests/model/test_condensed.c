@@ -62,7 +62,7 @@ static void load_is_that_of_literal_springs(void **state)
     assert_true(error[1] < error[0] / 2);
 }
 
-/* The sum of springs that is carried along is what they give literally, for the present pose. */
+/* The sum that is carried along is what bond and springs give literally, for the present pose. */
 static void tangent_is_the_slope(void **state)
 {
     struct fixture *f = *state;
@@ -89,13 +89,10 @@ static void tangent_is_the_slope(void **state)
     for (size_t i = 0; i < c->n; i++) {
         if (!was_held[i])
             continue;
-        double bond[3];
-        for (int k = 0; k < 3; k++)
-            bond[k] = rows->bond_old[i][k];
         brc_sub(now, c->f[i], condensed[i]);
         off += brc_norm2(now);
         for (int k = 0; k < 3; k++)
-            now[k] = c->f[i][k] - bond[k] - held[i][k];
+            now[k] = c->f[i][k] - held[i][k];
         plain += brc_norm2(now);
         largest = fmax(largest, brc_norm(c->f[i]));
         n++;
