@@ -285,4 +285,16 @@ BRC_LANES_INLINE void brc_lanes_gather3(brc_lanes r[3], double (*x)[3], const in
     r[2] = (brc_lanes){x[row[0]][2], x[row[1]][2], x[row[2]][2], x[row[3]][2]};
 }
 
+/* Rows of 3 values at the places b less those at a, to lanes. Reads one value past each row. */
+BRC_LANES_INLINE void brc_lanes_between3(brc_lanes r[3], double (*x)[3], const int32_t a[4],
+                                         const int32_t b[4])
+{
+    brc_lanes row[BRC_LANES];
+    for (int k = 0; k < BRC_LANES; k++)
+        row[k] = brc_lanes_at(x[b[k]]) - brc_lanes_at(x[a[k]]);
+    brc_lanes_transpose(row);
+    for (int k = 0; k < 3; k++)
+        r[k] = row[k];
+}
+
 #endif

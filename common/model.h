@@ -10,8 +10,9 @@
 #include "stability.h"
 
 enum brc_model_flags {
-    BRC_MODEL_ROTATES = 1, /* grains turn: moments are used */
-    BRC_MODEL_ORIENTED = 2 /* the model reads q: orientation is integrated */
+    BRC_MODEL_ROTATES = 1,  /* grains turn: moments are used */
+    BRC_MODEL_ORIENTED = 2, /* the model reads q: orientation is integrated */
+    BRC_MODEL_ADDS = 4      /* forces adds those of pairs to the bodies' sum; pairs keep f alone */
 };
 
 /* Sorted pairs (low, high) of bodies whose bounding spheres come within the skin of each other. */
@@ -43,7 +44,8 @@ struct brc_model {
                  const struct brc_candidates *platens);
     /* Hot. All rows of sim->pairs for one step: writes f, ta, tb, k (and k_version), updates point
      * state, adds to the ledger when sim->run.ledger is on, appends crack events. No allocation
-     * outside brc_contacts_points and brc_events_add, no I/O; reads bodies, never writes them. */
+     * outside brc_contacts_points and brc_events_add, no I/O; reads bodies, never writes them, but
+     * for their sum where the model ADDS: then ta and tb need not be written, nor read again. */
     void (*forces)(struct brc_sim *sim, void *state);
     /* The same for the rows of sim->platens. */
     void (*walls)(struct brc_sim *sim, void *state);

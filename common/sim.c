@@ -47,11 +47,15 @@ static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3
         brc_copy(fa, f[a]);
         brc_copy(ta, t[a]);
         for (; row < c->n && c->a[row] == a; row++) {
-            double *fb = f[c->b[row]], *tb = t[c->b[row]];
-            brc_sub(fa, fa, c->f[row]);
-            brc_add(fb, fb, c->f[row]);
-            brc_add(ta, ta, c->ta[row]);
-            brc_add(tb, tb, c->tb[row]);
+            const double *of = c->f[row], *of_a = c->ta[row], *of_b = c->tb[row];
+            double *restrict fb = f[c->b[row]], *restrict tb = t[c->b[row]];
+            for (int k = 0; k < 3; k++) {
+                double part = of[k];
+                fa[k] -= part;
+                fb[k] += part;
+                ta[k] += of_a[k];
+                tb[k] += of_b[k];
+            }
         }
         brc_copy(f[a], fa);
         brc_copy(t[a], ta);
@@ -61,11 +65,17 @@ static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3
 static void gather(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
+    bool is_added = sim->model.flags & BRC_MODEL_ADDS;
     for (size_t i = 0; i < b->n; i++) {
         brc_scale(b->f[i], sim->run.gravity, b->true_mass[i]);
         brc_set(b->t[i], 0, 0, 0);
+        if (is_added) {
+            brc_add(b->f[i], b->f[i], b->sum[i]);
+            brc_copy(b->t[i], b->sum[i] + 4);
+        }
     }
-    add_rows(&sim->pairs, b->f, b->t);
+    if (!is_added)
+        add_rows(&sim->pairs, b->f, b->t);
     add_rows(&sim->platens, b->f, b->t);
 }
 
@@ -177,8 +187,10 @@ static int follow_stiffness(struct brc_sim *sim, bool is_listed)
     return update_masses(sim, is_listed);
 }
 
-static void compute_forces(struct brc_sim *sim)
+void brc_sim_forces(struct brc_sim *sim)
 {
+    if (sim->model.flags & BRC_MODEL_ADDS)
+        memset(sim->bodies.sum, 0, sim->bodies.n * sizeof *sim->bodies.sum);
     sim->model.forces(sim, sim->state);
     sim->model.walls(sim, sim->state);
     gather(sim);
@@ -229,7 +241,7 @@ static int build(struct brc_sim *sim, const struct brc_test_params *test)
 static int start(struct brc_sim *sim)
 {
     double stored[3];
-    compute_forces(sim);
+    brc_sim_forces(sim);
     sim->ledger = (struct brc_ledger){0};
     sim->dt = sim->run.regime == BRC_QUASI_STATIC ? 1 : 0;
     sim->k_seen[0] = sim->k_seen[1] = -1;
@@ -336,7 +348,7 @@ int brc_sim_step(struct brc_sim *sim)
     sim->step++;
     sim->time += sim->dt;
     BRC_TRY(check_travel(sim));
-    compute_forces(sim);
+    brc_sim_forces(sim);
     BRC_TRY(sim->ctx->code);
     BRC_TRY(brc_rig_step(sim));
     BRC_TRY(follow_stiffness(sim, sim->n_listings > listings));

@@ -127,6 +127,8 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
                    const void *params, const struct brc_specimen *specimen,
                    const struct brc_test_params *test, const struct brc_run_params *run);
 void brc_sim_free(struct brc_sim *sim);
+/* Forces of all contacts after a motion, and their sums on the bodies: part of a step. */
+void brc_sim_forces(struct brc_sim *sim);
 /* One step: drift, candidates, forces, loading, kick, sample. */
 int brc_sim_step(struct brc_sim *sim);
 /* After all tables and scalars of a created simulation have been replaced by saved ones: derives

@@ -327,29 +327,9 @@ void fixture_list(struct fixture *f)
     memcpy(s->bodies.travel_listed, s->bodies.travel, s->bodies.n * sizeof *s->bodies.travel);
 }
 
-/* The sums over rows, once more and not by way of the adjacency. */
-static void add_rows(struct brc_bodies *b, const struct brc_contacts *c)
-{
-    for (size_t i = 0; i < c->n; i++) {
-        brc_axpy(b->f[c->a[i]], -1, c->f[i]);
-        brc_axpy(b->f[c->b[i]], 1, c->f[i]);
-        brc_axpy(b->t[c->a[i]], 1, c->ta[i]);
-        brc_axpy(b->t[c->b[i]], 1, c->tb[i]);
-    }
-}
-
 void fixture_forces(struct fixture *f)
 {
-    struct brc_sim *s = &f->sim;
-    struct brc_bodies *b = &s->bodies;
-    s->model.forces(s, s->state);
-    s->model.walls(s, s->state);
-    for (size_t i = 0; i < b->n; i++) {
-        brc_scale(b->f[i], s->run.gravity, b->true_mass[i]);
-        brc_set(b->t[i], 0, 0, 0);
-    }
-    add_rows(b, &s->pairs);
-    add_rows(b, &s->platens);
+    brc_sim_forces(&f->sim);
     CHECK_OK(&f->ctx, f->ctx.code);
 }
 
@@ -428,7 +408,8 @@ double fixture_third_law(const struct fixture *f)
     const struct brc_bodies *b = &f->sim.bodies;
     const struct brc_contacts *sets[2] = {&f->sim.pairs, &f->sim.platens};
     double largest = 0;
-    for (int s = 0; s < 2; s++)
+    /* the moments of pairs are not kept where the model adds them itself */
+    for (int s = f->sim.model.flags & BRC_MODEL_ADDS ? 1 : 0; s < 2; s++)
         for (size_t i = 0; i < sets[s]->n; i++) {
             const struct brc_contacts *c = sets[s];
             double arm[3], m[3];

@@ -11,7 +11,13 @@
 #include "common/vec.h"
 #include "vgcm/vgcm.h"
 
-/* Four contacts side by side: each operation below is done for all at once. */
+/* Four rows that are treated side by side, each operation below for all at once. Where there are
+ * fewer the last one is repeated. */
+struct vgcm_rows {
+    int32_t at[BRC_LANES];
+    bool is_run; /* they follow each other */
+};
+
 struct vgcm_motion {
     brc_lanes n[3], s[3], t[3];  /* frame at the end of the step */
     brc_lanes d;                 /* m, distance of the centres */
@@ -19,25 +25,52 @@ struct vgcm_motion {
     brc_lanes du[VGCM_N_MOTION]; /* increments of the generalised displacement */
 };
 
+/* Columns of four rows to and from lanes. */
+VGCM_INLINE brc_lanes vgcm_at(const double *x, const struct vgcm_rows *r)
+{
+    const int32_t *i = r->at;
+    return r->is_run ? brc_lanes_at(x + i[0]) : (brc_lanes){x[i[0]], x[i[1]], x[i[2]], x[i[3]]};
+}
+
+VGCM_INLINE void vgcm_put(double *x, const struct vgcm_rows *r, brc_lanes a)
+{
+    if (r->is_run)
+        brc_lanes_put(x + r->at[0], a);
+    else
+        for (int k = BRC_LANES - 1; k >= 0; k--) /* the first of equal rows is what stays */
+            x[r->at[k]] = a[k];
+}
+
+VGCM_INLINE void vgcm_at3(brc_lanes a[3], double (*x)[3], const struct vgcm_rows *r)
+{
+    if (r->is_run)
+        brc_lanes_at3(a, x + r->at[0]);
+    else
+        brc_lanes_gather3(a, x, r->at);
+}
+
+VGCM_INLINE void vgcm_put3(double (*x)[3], const struct vgcm_rows *r, const brc_lanes a[3])
+{
+    if (r->is_run)
+        brc_lanes_put3(x + r->at[0], a);
+    else
+        brc_lanes_scatter3(x, r->at, a);
+}
+
 /* Point j of a row with the shear stiffness ks [N/m], where its row has no field of its own. */
 static inline struct vgcm_point vgcm_point_at(const struct vgcm_points *p, size_t j, double un,
                                               double ks)
 {
-    return (struct vgcm_point){.un = un, .fs = ks * p->slip_s[j], .ft = ks * p->slip_t[j], .dn = 1};
+    return (struct vgcm_point){
+        .un = un, .fs = ks * p->law[j][VGCM_SLIP_S], .ft = ks * p->law[j][VGCM_SLIP_T], .dn = 1};
 }
 
 static inline void vgcm_point_put(const struct vgcm_points *p, size_t j, double ks,
                                   const struct vgcm_point *q)
 {
     double inv = ks > 0 ? 1 / ks : 0;
-    p->slip_s[j] = inv * q->fs;
-    p->slip_t[j] = inv * q->ft;
-}
-
-/* First of the four rows among which row i is treated. */
-static inline size_t vgcm_block(size_t i)
-{
-    return i & ~(size_t)(BRC_LANES - 1);
+    p->law[j][VGCM_SLIP_S] = inv * q->fs;
+    p->law[j][VGCM_SLIP_T] = inv * q->ft;
 }
 
 /* s1 is s, given with the normal n0, turned with the least rotation from n0 to n1 (tilt) and by phi
@@ -51,32 +84,28 @@ VGCM_INLINE void vgcm_frame_turn(brc_lanes s1[3], const brc_lanes s[3], const br
         tilted[k] = size * s[k] - tilt * (n0[k] + n1[k]);
     brc_lanes_cross(q, n1, tilted);
     for (int k = 0; k < 3; k++)
-        s1[k] = (1 - phi * phi / 2) * tilted[k] + (phi - phi * phi * phi / 6) * q[k];
+        s1[k] = (1 - phi * phi / 2) * tilted[k] + (phi - phi * phi * phi * (1.0 / 6)) * q[k];
 }
 
-/* Frames and increments of contacts i to i + 3 over the step that has just been made. */
+/* Frames and increments of four contacts over the step that has just been made. */
 VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct brc_contacts *c,
-                                size_t i, double dt, struct vgcm_motion *m)
+                                const struct vgcm_rows *rows, double dt, struct vgcm_motion *m)
 {
     const struct vgcm_contacts *f = vgcm_columns(c);
-    const int32_t *a = c->a + i, *b = c->b + i;
-    brc_lanes xa[3], xb[3], va[3], vb[3], wa[3], wb[3], n0[3], s0[3], v[3], nm[3], sm[3], tm[3];
-    brc_lanes_gather3(xa, bodies->x, a);
-    brc_lanes_gather3(xb, bodies->x, b);
-    brc_lanes_gather3(va, bodies->v, a);
-    brc_lanes_gather3(vb, bodies->v, b);
+    const int32_t *i = rows->at, a[] = {c->a[i[0]], c->a[i[1]], c->a[i[2]], c->a[i[3]]};
+    const int32_t b[] = {c->b[i[0]], c->b[i[1]], c->b[i[2]], c->b[i[3]]};
+    brc_lanes x[3], v[3], wa[3], wb[3], n0[3], s0[3], nm[3], sm[3], tm[3], half[3];
+    brc_lanes_between3(x, bodies->x, a, b);
+    brc_lanes_between3(v, bodies->v, a, b);
     brc_lanes_gather3(wa, bodies->w, a);
     brc_lanes_gather3(wb, bodies->w, b);
-    brc_lanes_at3(n0, f->n + i);
-    brc_lanes_at3(s0, f->s + i);
-    for (int k = 0; k < 3; k++)
-        xb[k] -= xa[k];
-    brc_lanes half[3];
-    m->d = brc_lanes_sqrt(brc_lanes_dot(xb, xb));
-    m->h = 0.5 * m->d + brc_lanes_at(f->plane + i); /* eq:vgcm:7 eq:vgcm:8 */
+    vgcm_at3(n0, f->n, rows);
+    vgcm_at3(s0, f->s, rows);
+    m->d = brc_lanes_sqrt(brc_lanes_dot(x, x));
+    m->h = 0.5 * m->d + vgcm_at(f->plane, rows); /* eq:vgcm:7 eq:vgcm:8 */
     brc_lanes inv = 1 / m->d;
     for (int k = 0; k < 3; k++) {
-        m->n[k] = xb[k] * inv; /* eq:vgcm:6 */
+        m->n[k] = x[k] * inv; /* eq:vgcm:6 */
         nm[k] = 0.5 * (n0[k] + m->n[k]);
         half[k] = 0.5 * dt * (wa[k] + wb[k]);
     }
@@ -90,9 +119,9 @@ VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct br
     brc_lanes_cross(tm, nm, sm);
     brc_lanes_cross(half, half, nm);
     for (int k = 0; k < 3; k++)
-        v[k] = dt * (vb[k] - va[k] - half[k]); /* eq:vgcm:11 at the reference point */
-    m->du[VGCM_OPEN] = brc_lanes_dot(v, nm);   /* eq:vgcm:12 */
-    m->du[VGCM_S] = brc_lanes_dot(v, sm);      /* eq:vgcm:13 */
+        v[k] = dt * (v[k] - half[k]);        /* eq:vgcm:11 at the reference point */
+    m->du[VGCM_OPEN] = brc_lanes_dot(v, nm); /* eq:vgcm:12 */
+    m->du[VGCM_S] = brc_lanes_dot(v, sm);    /* eq:vgcm:13 */
     m->du[VGCM_T] = brc_lanes_dot(v, tm);
     m->du[VGCM_TWIST] = brc_lanes_dot(wb, nm);
     m->du[VGCM_BEND_S] = brc_lanes_dot(wb, sm);
@@ -100,8 +129,8 @@ VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct br
 }
 
 /* Opening and slips of the affine field u at the places (s, t). */
-VGCM_INLINE void vgcm_motion_at(brc_wide at[3], const brc_wide u[VGCM_N_MOTION], brc_wide s,
-                                brc_wide t)
+VGCM_INLINE void vgcm_motion_at(brc_lanes at[3], const brc_lanes u[VGCM_N_MOTION], brc_lanes s,
+                                brc_lanes t)
 {
     at[0] = u[VGCM_OPEN] - u[VGCM_BEND_T] * s + u[VGCM_BEND_S] * t; /* eq:vgcm:9 eq:vgcm:11 */
     at[1] = u[VGCM_S] - u[VGCM_TWIST] * t;
@@ -110,8 +139,8 @@ VGCM_INLINE void vgcm_motion_at(brc_wide at[3], const brc_wide u[VGCM_N_MOTION],
 
 /* Adds the points' normal forces (tension positive) and shear forces on b, the parts of
  * eq:vgcm:10, to the generalised force. */
-VGCM_INLINE void vgcm_force_add(brc_wide sum[VGCM_N_MOTION], brc_wide fn, brc_wide fs, brc_wide ft,
-                                brc_wide s, brc_wide t)
+VGCM_INLINE void vgcm_force_add(brc_lanes sum[VGCM_N_MOTION], brc_lanes fn, brc_lanes fs,
+                                brc_lanes ft, brc_lanes s, brc_lanes t)
 {
     sum[VGCM_OPEN] += fn; /* eq:vgcm:20 */
     sum[VGCM_S] += fs;
@@ -136,23 +165,6 @@ VGCM_INLINE void vgcm_force_affine(brc_lanes sum[VGCM_N_MOTION], brc_lanes kn, b
     sum[VGCM_TWIST] = m[VGCM_A_T] * us - m[VGCM_A_S] * ut - (m[VGCM_A_SS] + m[VGCM_A_TT]) * twist;
 }
 
-/* Generalised force of points at rest under the field u, from their sums. */
-VGCM_INLINE void vgcm_force_held(brc_lanes sum[VGCM_N_MOTION], brc_lanes kn, brc_lanes ks,
-                                 const brc_lanes held[VGCM_N_HELD],
-                                 const brc_lanes u[VGCM_N_MOTION])
-{
-    brc_lanes open = kn * u[VGCM_OPEN], bs = kn * u[VGCM_BEND_S], bt = kn * u[VGCM_BEND_T];
-    brc_lanes us = u[VGCM_S], ut = u[VGCM_T], twist = u[VGCM_TWIST];
-    brc_lanes area = held[VGCM_HELD_A], as = held[VGCM_HELD_A_S], at = held[VGCM_HELD_A_T];
-    sum[VGCM_OPEN] = held[VGCM_A] * open - held[VGCM_A_S] * bt + held[VGCM_A_T] * bs;
-    sum[VGCM_BEND_S] = held[VGCM_A_T] * open - held[VGCM_A_ST] * bt + held[VGCM_A_TT] * bs;
-    sum[VGCM_BEND_T] = held[VGCM_A_SS] * bt - held[VGCM_A_S] * open - held[VGCM_A_ST] * bs;
-    sum[VGCM_S] = ks * (held[VGCM_HELD_SLIP_S] + at * twist - area * us);
-    sum[VGCM_T] = ks * (held[VGCM_HELD_SLIP_T] - as * twist - area * ut);
-    sum[VGCM_TWIST] =
-        ks * (held[VGCM_HELD_SLIP_TWIST] + at * us - as * ut - held[VGCM_HELD_POLAR] * twist);
-}
-
 /* Work that the motion u does against the generalised force: what the contact takes up. */
 VGCM_INLINE brc_lanes vgcm_force_work(const brc_lanes f[VGCM_N_MOTION],
                                       const brc_lanes u[VGCM_N_MOTION])
@@ -160,6 +172,21 @@ VGCM_INLINE brc_lanes vgcm_force_work(const brc_lanes f[VGCM_N_MOTION],
     return f[VGCM_OPEN] * u[VGCM_OPEN] + f[VGCM_BEND_S] * u[VGCM_BEND_S] +
            f[VGCM_BEND_T] * u[VGCM_BEND_T] - f[VGCM_S] * u[VGCM_S] - f[VGCM_T] * u[VGCM_T] -
            f[VGCM_TWIST] * u[VGCM_TWIST];
+}
+
+/* Twice the energy of affine points with the field u. */
+VGCM_INLINE brc_lanes vgcm_energy_affine(brc_lanes kn, brc_lanes ks,
+                                         const brc_lanes m[VGCM_N_MOMENTS],
+                                         const brc_lanes u[VGCM_N_MOTION])
+{
+    brc_lanes open = u[VGCM_OPEN], bs = u[VGCM_BEND_S], bt = u[VGCM_BEND_T];
+    brc_lanes us = u[VGCM_S], ut = u[VGCM_T], twist = u[VGCM_TWIST];
+    brc_lanes normal = open * (m[VGCM_A] * open + 2 * (m[VGCM_A_T] * bs - m[VGCM_A_S] * bt)) +
+                       bt * (m[VGCM_A_SS] * bt - 2 * m[VGCM_A_ST] * bs) + m[VGCM_A_TT] * (bs * bs);
+    brc_lanes polar = m[VGCM_A_SS] + m[VGCM_A_TT];
+    brc_lanes shear = twist * (polar * twist + 2 * (m[VGCM_A_S] * ut - m[VGCM_A_T] * us)) +
+                      m[VGCM_A] * (us * us + ut * ut);
+    return kn * normal + ks * shear;
 }
 
 /* Forces on b and moments about both centres of the generalised forces. */
@@ -177,15 +204,30 @@ VGCM_INLINE void vgcm_force_of(brc_lanes f[3], brc_lanes ta[3], brc_lanes tb[3],
     }
 }
 
-/* The same into rows i to i + 3. */
-VGCM_INLINE void vgcm_force_apply(struct brc_contacts *c, size_t i, const struct vgcm_motion *m,
-                                  const brc_lanes sum[VGCM_N_MOTION])
+/* The same for the sums on the bodies of four rows; the rows keep the force. */
+VGCM_INLINE void vgcm_force_apply(const struct brc_bodies *bodies, struct brc_contacts *c,
+                                  const struct vgcm_rows *rows, brc_mask live,
+                                  const struct vgcm_motion *m, const brc_lanes sum[VGCM_N_MOTION])
 {
-    brc_lanes f[3], ta[3], tb[3];
+    brc_lanes f[4], ta[4], tb[4];
     vgcm_force_of(f, ta, tb, m, sum);
-    brc_lanes_put3(c->f + i, f);
-    brc_lanes_put3(c->ta + i, ta);
-    brc_lanes_put3(c->tb + i, tb);
+    vgcm_put3(c->f, rows, f);
+    for (int k = 0; k < 3; k++) {
+        f[k] = brc_lanes_where(live, f[k]);
+        ta[k] = brc_lanes_where(live, ta[k]);
+        tb[k] = brc_lanes_where(live, tb[k]);
+    }
+    f[3] = ta[3] = tb[3] = brc_lanes_all(0);
+    brc_lanes_transpose(f);
+    brc_lanes_transpose(ta);
+    brc_lanes_transpose(tb);
+    for (int k = 0; k < BRC_LANES; k++) {
+        double *a = bodies->sum[c->a[rows->at[k]]], *b = bodies->sum[c->b[rows->at[k]]];
+        brc_lanes_put(a, brc_lanes_at(a) - f[k]);
+        brc_lanes_put(a + 4, brc_lanes_at(a + 4) + ta[k]);
+        brc_lanes_put(b, brc_lanes_at(b) + f[k]);
+        brc_lanes_put(b + 4, brc_lanes_at(b + 4) + tb[k]);
+    }
 }
 
 #endif

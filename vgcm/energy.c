@@ -8,21 +8,22 @@ static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgc
 {
     const struct vgcm_points *p = vgcm_point_columns(c);
     const double *u = vgcm_columns(c)->u[i];
-    double ks = bond->ks * p->area[j];
+    double ks = bond->ks * p->law[j][VGCM_AREA];
     struct vgcm_point q = vgcm_point_at(p, j, c->gap[i], ks);
     if (vgcm_columns(c)->phase[i] != VGCM_SPHERE) {
-        brc_wide at[3], field[VGCM_N_MOTION];
+        brc_lanes at[3], field[VGCM_N_MOTION];
         for (int k = 0; k < VGCM_N_MOTION; k++)
-            field[k] = brc_wide_all(u[k]);
-        vgcm_motion_at(at, field, brc_wide_all(p->s[j]), brc_wide_all(p->t[j]));
+            field[k] = brc_lanes_all(u[k]);
+        vgcm_motion_at(at, field, brc_lanes_all(p->law[j][VGCM_AT_S]),
+                       brc_lanes_all(p->law[j][VGCM_AT_T]));
         q.un = at[0][0];
-        q.dn = p->dn[j];
-        q.ds = p->ds[j];
+        q.dn = p->law[j][VGCM_DN];
+        q.ds = p->law[j][VGCM_DS];
         bool is_loose = q.un > 0 && vgcm_law_damage(&q) == 1;
         q.fs = is_loose ? 0 : q.fs - ks * at[1][0];
         q.ft = is_loose ? 0 : q.ft - ks * at[2][0];
     }
-    q.fn = vgcm_law_normal(bond, flags, p->area[j], &q);
+    q.fn = vgcm_law_normal(bond, flags, p->law[j][VGCM_AREA], &q);
     return q;
 }
 
@@ -41,19 +42,19 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
     int flags = law->is_brittle ? VGCM_BRITTLE : 0;
     if (f->phase[i] == VGCM_AFFINE) {
-        brc_lanes sum[VGCM_N_MOTION], u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
+        brc_lanes u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
         for (int k = 0; k < VGCM_N_MOTION; k++) {
             u[k] = brc_lanes_all(f->u[i][k]);
             moment[k] = brc_lanes_all(f->moment[i][k]);
         }
-        vgcm_force_affine(sum, brc_lanes_all(bond.kn), brc_lanes_all(bond.ks), moment, u);
-        stored[0] += 0.5 * vgcm_force_work(sum, u)[0];
+        stored[0] +=
+            0.5 * vgcm_energy_affine(brc_lanes_all(bond.kn), brc_lanes_all(bond.ks), moment, u)[0];
         return;
     }
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         struct vgcm_point q = point_of(c, &bond, i, j, flags);
         bool is_bond = vgcm_law_damage(&q) < 1;
-        double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->area[j], &q);
+        double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->law[j][VGCM_AREA], &q);
         stored[is_bond ? 0 : 1] += normal;
         stored[is_bond ? 0 : 2] += shear;
     }
@@ -68,10 +69,10 @@ static void add_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
     double kn = vgcm_columns(c)->kn[i];
     struct vgcm_bond bond = {.law = law, .kn = kn, .ks = law->eta * kn};
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        struct vgcm_point q = vgcm_point_at(p, j, p->un[j], bond.ks * p->area[j]);
+        struct vgcm_point q = vgcm_point_at(p, j, p->un[j], bond.ks * p->law[j][VGCM_AREA]);
         if (is_grip || q.un < 0)
-            stored[1] += 0.5 * kn * p->area[j] * q.un * q.un;
-        stored[2] += shear_energy(&bond, p->area[j], &q);
+            stored[1] += 0.5 * kn * p->law[j][VGCM_AREA] * q.un * q.un;
+        stored[2] += shear_energy(&bond, p->law[j][VGCM_AREA], &q);
     }
 }
 
@@ -95,20 +96,21 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     struct vgcm_motion m;
     if (c->k[i][0] == 0)
         return 0;
-    size_t first = vgcm_block(i), lane = i - first;
-    vgcm_motion_of(&sim->bodies, c, first, 0, &m);
+    int32_t row = (int32_t)i;
+    const struct vgcm_rows rows = {.at = {row, row, row, row}};
+    vgcm_motion_of(&sim->bodies, c, &rows, 0, &m);
     struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
     double s[3], t[3];
-    brc_set(spring.n, m.n[0][lane], m.n[1][lane], m.n[2][lane]);
-    brc_set(s, m.s[0][lane], m.s[1][lane], m.s[2][lane]);
-    brc_set(t, m.t[0][lane], m.t[1][lane], m.t[2][lane]);
+    brc_set(spring.n, m.n[0][0], m.n[1][0], m.n[2][0]);
+    brc_set(s, m.s[0][0], m.s[1][0], m.s[2][0]);
+    brc_set(t, m.t[0][0], m.t[1][0], m.t[2][0]);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        brc_scale(spring.ra, spring.n, m.h[lane]);
-        brc_axpy(spring.ra, p->s[j], s);
-        brc_axpy(spring.ra, p->t[j], t);
+        brc_scale(spring.ra, spring.n, m.h[0]);
+        brc_axpy(spring.ra, p->law[j][VGCM_AT_S], s);
+        brc_axpy(spring.ra, p->law[j][VGCM_AT_T], t);
         brc_copy(spring.rb, spring.ra);
-        brc_axpy(spring.rb, -m.d[lane], spring.n);
-        spring.kn = f->kn[i] * p->area[j];
+        brc_axpy(spring.rb, -m.d[0], spring.n);
+        spring.kn = f->kn[i] * p->law[j][VGCM_AREA];
         spring.ks = law->eta * spring.kn;
         BRC_TRY(brc_springs_add(sim->ctx, out, &spring));
     }
@@ -130,9 +132,9 @@ static int list_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
         brc_scale(spring.ra, f->n[i], p->h[j]);
         if (f->phase[i] == VGCM_SPHERE)
             brc_scale(spring.ra, f->n[i], p->un[j] + f->rest[i]);
-        brc_axpy(spring.ra, p->s[j], f->s[i]);
-        brc_axpy(spring.ra, p->t[j], t);
-        spring.kn = f->kn[i] * p->area[j];
+        brc_axpy(spring.ra, p->law[j][VGCM_AT_S], f->s[i]);
+        brc_axpy(spring.ra, p->law[j][VGCM_AT_T], t);
+        spring.kn = f->kn[i] * p->law[j][VGCM_AREA];
         spring.ks = platen->grip == BRC_GRIP_AXIAL ? 0 : law->eta * spring.kn;
         BRC_TRY(brc_springs_add(sim->ctx, out, &spring));
     }

@@ -8,7 +8,7 @@
 #ifndef VGCM_LAW_H
 #define VGCM_LAW_H
 
-#include "common/wide.h"
+#include "common/lanes.h"
 
 /* for functions that are called with literal flags: the loops shed what the flags turn off */
 #define VGCM_INLINE BRC_LANES_INLINE
@@ -61,27 +61,26 @@ enum vgcm_bond_parts {
     VGCM_N_BOND
 };
 
-/* Points side by side, eight or one half of eight: the law is written for these, in three parts
- * that hand on what is listed here. Forces are those per area and stiffness, so that they are
- * displacements, too. */
-struct vgcm_point_wide {
-    brc_wide dn, ds;         /* damage by opening and by slip */
-    brc_wide slip_s, slip_t; /* m, plastic slip */
-    brc_wide un, un_old;     /* m, opening, before the step */
-    brc_wide damage_old;     /* dn + ds before the step */
-    brc_wide pull_old, pull; /* m, normal force, tension positive */
-    brc_wide secant;         /* m, tension at the peak strength, by the secant */
-    brc_wide s_old, t_old;   /* m, shear force on b before the step */
-    brc_wide s, t;           /* m, trial shear force on b */
-    brc_wide force2, force;  /* m2, m: its square and size */
-    brc_wide part;           /* of it that is left */
-    bool slides;             /* some of them do; else force is not set */
-    brc_wide_mask loose;     /* were broken and open before the step */
+/* Points of four rows side by side: the law is written for these, in three parts that hand on what
+ * is listed here. Forces are those per area and stiffness, so that they are displacements, too. */
+struct vgcm_point_lanes {
+    brc_lanes dn, ds;         /* damage by opening and by slip */
+    brc_lanes slip_s, slip_t; /* m, plastic slip */
+    brc_lanes un, un_old;     /* m, opening, before the step */
+    brc_lanes damage_old;     /* dn + ds before the step */
+    brc_lanes pull_old, pull; /* m, normal force, tension positive */
+    brc_lanes secant;         /* m, tension at the peak strength, by the secant */
+    brc_lanes s_old, t_old;   /* m, shear force on b before the step */
+    brc_lanes s, t;           /* m, trial shear force on b */
+    brc_lanes force2, force;  /* m2, m: its square and size */
+    brc_lanes part;           /* of it that is left */
+    bool slides;              /* some of them do; else force is not set */
+    brc_mask loose;           /* were broken and open before the step */
 };
 
 /* What is added up over steps [J]. */
-struct vgcm_energy_wide {
-    brc_wide bond, normal, shear, damage, friction;
+struct vgcm_energy_lanes {
+    brc_lanes bond, normal, shear, damage, friction;
 };
 
 /* beta: strength left at the kink (fraction of the peak); w1: its place past the peak in units of
@@ -95,20 +94,20 @@ static inline void vgcm_law_softening(struct vgcm_law *law, double beta, double 
 }
 
 /* Strength at a damage over the peak strength: 1 at 0, beta at the kink, 0 from 1 on. */
-VGCM_INLINE brc_wide vgcm_wide_strength(const struct vgcm_law *law, int flags, brc_wide damage)
+VGCM_INLINE brc_lanes vgcm_lanes_strength(const struct vgcm_law *law, int flags, brc_lanes damage)
 {
-    brc_wide none = brc_wide_all(0), one = brc_wide_all(1);
+    brc_lanes none = brc_lanes_all(0), one = brc_lanes_all(1);
     if (flags & VGCM_BRITTLE)
-        return brc_wide_where(brc_wide_less(damage, one), one);
-    brc_wide steep = 1 - law->slope[0] * damage, flat = law->slope[1] - law->slope[1] * damage;
-    brc_wide left =
-        law->slope[1] <= law->slope[0] ? brc_wide_max(steep, flat) : brc_wide_min(steep, flat);
-    return brc_wide_max(left, none);
+        return brc_lanes_where(brc_lanes_less(damage, one), one);
+    brc_lanes steep = 1 - law->slope[0] * damage, flat = law->slope[1] - law->slope[1] * damage;
+    brc_lanes left =
+        law->slope[1] <= law->slope[0] ? brc_lanes_max(steep, flat) : brc_lanes_min(steep, flat);
+    return brc_lanes_max(left, none);
 }
 
 static inline double vgcm_law_strength(const struct vgcm_law *law, double damage)
 {
-    return vgcm_wide_strength(law, 0, brc_wide_all(damage))[0];
+    return vgcm_lanes_strength(law, 0, brc_lanes_all(damage))[0];
 }
 
 /* Elastic energies at the peak strengths per unit area [J/m2]. */
@@ -158,113 +157,115 @@ static inline double vgcm_law_damage(const struct vgcm_point *p)
 }
 
 /* Where points of a damage are not broken. */
-VGCM_INLINE brc_wide_mask vgcm_wide_whole(brc_wide damage)
+VGCM_INLINE brc_mask vgcm_lanes_whole(brc_lanes damage)
 {
-    return brc_wide_less(damage, brc_wide_all(1));
+    return brc_lanes_less(damage, brc_lanes_all(1));
 }
 
 /* Normal force: tension falls with the strength, compression is never weakened. */
-VGCM_INLINE brc_wide vgcm_wide_pull(brc_wide un, brc_wide secant, brc_wide strength)
+VGCM_INLINE brc_lanes vgcm_lanes_pull(brc_lanes un, brc_lanes secant, brc_lanes strength)
 {
-    brc_wide weak = secant * strength; /* eq:vgcm:32 */
-    return brc_wide_pick(brc_wide_less(brc_wide_all(0), un), weak, un);
+    brc_lanes weak = secant * strength; /* eq:vgcm:32 */
+    return brc_lanes_pick(brc_lanes_less(brc_lanes_all(0), un), weak, un);
 }
 
 /* Shear strength [m] under a normal force. */
-VGCM_INLINE brc_wide vgcm_wide_limit(const struct vgcm_law *law, brc_wide e0, brc_wide pull,
-                                     brc_wide strength)
+VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, brc_lanes e0, brc_lanes pull,
+                                       brc_lanes strength)
 {
     double mu = law->eta > 0 ? law->mu / law->eta : 0;
-    brc_wide limit = e0 * strength - mu * pull; /* eq:vgcm:33 */
-    return brc_wide_max(limit, brc_wide_all(0));
+    brc_lanes limit = e0 * strength - mu * pull; /* eq:vgcm:33 */
+    return brc_lanes_max(limit, brc_lanes_all(0));
 }
 
 /* Damage grows with the opening past the largest so far; tension follows the secant to the strength
  * at the largest. One division serves the secants before and now. */
-VGCM_INLINE void vgcm_wide_open(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
-                                int flags, struct vgcm_point_wide *p)
+VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bond[VGCM_N_BOND],
+                                 int flags, struct vgcm_point_lanes *p)
 {
-    brc_wide strength = vgcm_wide_strength(law, flags, p->damage_old), old = p->un_old;
-    brc_wide_mask whole = vgcm_wide_whole(p->damage_old);
+    brc_lanes strength = vgcm_lanes_strength(law, flags, p->damage_old), old = p->un_old;
+    brc_mask whole = vgcm_lanes_whole(p->damage_old);
     p->secant = p->un;
     if (flags & VGCM_BRITTLE) {
-        brc_wide_mask grew = brc_wide_less(bond[VGCM_U0], p->un);
-        p->dn = brc_wide_pick(brc_wide_both(grew, whole), brc_wide_all(1), p->dn);
+        brc_mask grew = brc_lanes_less(bond[VGCM_U0], p->un);
+        p->dn = brc_lanes_pick(grew & whole, brc_lanes_all(1), p->dn);
     } else {
-        brc_wide dn = (p->un - bond[VGCM_U0]) * bond[VGCM_PER_WN];
-        dn = brc_wide_pick(whole, brc_wide_max(dn, p->dn), p->dn);
-        brc_wide before = 1 + p->dn * bond[VGCM_WN_U0], after = 1 + dn * bond[VGCM_WN_U0];
-        brc_wide inv = 1 / (before * after);
+        brc_lanes dn = (p->un - bond[VGCM_U0]) * bond[VGCM_PER_WN];
+        dn = brc_lanes_pick(whole, brc_lanes_max(dn, p->dn), p->dn);
+        brc_lanes before = 1 + p->dn * bond[VGCM_WN_U0], after = 1 + dn * bond[VGCM_WN_U0];
+        brc_lanes inv = 1 / (before * after);
         old *= inv * after;
         p->secant *= inv * before;
         p->dn = dn;
     }
-    p->pull_old = vgcm_wide_pull(p->un_old, old, strength);
+    p->pull_old = vgcm_lanes_pull(p->un_old, old, strength);
 }
 
 /* Shear: trial force, then back to the strength, which falls with the slip. In terms of the
  * displacement past the peak the damage grows by excess/(ks ws) on both branches, because
  * ks (slip) = ks ws dD + tau (fall of the strength). Forms the normal force, too. */
-VGCM_INLINE void vgcm_wide_slide(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
-                                 int flags, struct vgcm_point_wide *p)
+VGCM_INLINE void vgcm_lanes_slide(const struct vgcm_law *law, const brc_lanes bond[VGCM_N_BOND],
+                                  int flags, struct vgcm_point_lanes *p)
 {
-    brc_wide e0 = bond[VGCM_E0], damage = p->dn + p->ds;
-    brc_wide strength = vgcm_wide_strength(law, flags, damage);
-    p->pull = vgcm_wide_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
-    brc_wide limit = vgcm_wide_limit(law, e0, p->pull, strength);
-    brc_wide_mask cut = brc_wide_less(limit * limit, p->force2);
-    p->part = brc_wide_all(1);
-    p->slides = brc_wide_any(cut);
+    brc_lanes e0 = bond[VGCM_E0], damage = p->dn + p->ds;
+    brc_lanes strength = vgcm_lanes_strength(law, flags, damage);
+    p->pull = vgcm_lanes_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
+    brc_lanes limit = vgcm_lanes_limit(law, e0, p->pull, strength);
+    brc_mask cut = brc_lanes_less(limit * limit, p->force2);
+    p->part = brc_lanes_all(1);
+    p->slides = brc_lanes_any(cut);
     if (!p->slides)
         return;
-    brc_wide force = brc_wide_sqrt(p->force2), inv = 1 / force;
-    brc_wide_mask weakened = brc_wide_both(cut, vgcm_wide_whole(damage));
+    brc_lanes force = brc_lanes_sqrt(p->force2), inv = 1 / force;
+    brc_mask weakened = cut & vgcm_lanes_whole(damage);
     if (flags & VGCM_BRITTLE)
-        p->ds = brc_wide_pick(weakened, brc_wide_all(1), p->ds);
+        p->ds = brc_lanes_pick(weakened, brc_lanes_all(1), p->ds);
     else
-        p->ds += brc_wide_where(weakened, (force - limit) * bond[VGCM_PER_WS]);
-    strength = vgcm_wide_strength(law, flags, p->dn + p->ds);
-    p->pull = vgcm_wide_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
-    limit = vgcm_wide_limit(law, e0, p->pull, strength);
+        p->ds += brc_lanes_where(weakened, (force - limit) * bond[VGCM_PER_WS]);
+    strength = vgcm_lanes_strength(law, flags, p->dn + p->ds);
+    p->pull = vgcm_lanes_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
+    limit = vgcm_lanes_limit(law, e0, p->pull, strength);
     p->force = force;
-    p->part = brc_wide_pick(cut, limit * inv, p->part);
+    p->part = brc_lanes_pick(cut, limit * inv, p->part);
 }
 
 /* Energies of a step in which some point is broken: what the others keep in their bonds; contact
  * springs of the broken ones. work, kept: per area, by the normal force and in shear. */
-VGCM_INLINE void vgcm_wide_account_broken(brc_wide_mask was, brc_wide_mask is, brc_wide area,
-                                          brc_wide kept_bond, const brc_wide stored[2],
-                                          const brc_wide old[2], brc_wide work,
-                                          struct vgcm_energy_wide *e)
+VGCM_INLINE void vgcm_lanes_account_broken(brc_mask was, brc_mask is, brc_lanes area,
+                                           brc_lanes kept_bond, const brc_lanes stored[2],
+                                           const brc_lanes old[2], brc_lanes work,
+                                           struct vgcm_energy_lanes *e)
 {
-    brc_wide none = brc_wide_all(0);
-    brc_wide gone = brc_wide_where(was, -(old[0] + old[1]));
-    e->bond += area * brc_wide_pick(is, kept_bond, gone);
-    e->normal += area * brc_wide_pick(is, none, brc_wide_pick(was, stored[0], work));
-    e->shear += area * brc_wide_pick(is, none, stored[1] - brc_wide_pick(was, none, old[1]));
+    brc_lanes none = brc_lanes_all(0);
+    brc_lanes gone = brc_lanes_where(was, -(old[0] + old[1]));
+    e->bond += area * brc_lanes_pick(is, kept_bond, gone);
+    e->normal += area * brc_lanes_pick(is, none, brc_lanes_pick(was, stored[0], work));
+    e->shear += area * brc_lanes_pick(is, none, stored[1] - brc_lanes_pick(was, none, old[1]));
 }
 
 /* Energies of a step, by the trapezoid rule for each force, see common/ledger.h. Returns what
  * points that were whole have lost [J]. */
-VGCM_INLINE brc_wide vgcm_wide_account(const struct vgcm_law *law, const brc_wide bond[VGCM_N_BOND],
-                                       int flags, brc_wide area, const struct vgcm_point_wide *p,
-                                       struct vgcm_energy_wide *e)
+VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
+                                         const brc_lanes bond[VGCM_N_BOND], int flags,
+                                         brc_lanes area, const struct vgcm_point_lanes *p,
+                                         struct vgcm_energy_lanes *e)
 {
-    brc_wide none = brc_wide_all(0), half_kn = bond[VGCM_HALF_KN], half_ks = bond[VGCM_HALF_KS];
-    brc_wide damage = p->dn + p->ds;
-    brc_wide_mask was = vgcm_wide_whole(p->damage_old), is = vgcm_wide_whole(damage);
-    brc_wide stored = half_kn * (p->pull * p->un), stored_old = half_kn * (p->pull_old * p->un_old);
-    brc_wide excess = half_kn * (p->pull_old * p->un - p->pull * p->un_old); /* work - stored */
-    brc_wide_mask weakened = brc_wide_both(was, brc_wide_less(p->damage_old, damage));
-    brc_wide loss = brc_wide_where(weakened, excess), lost = area * loss, left2 = p->force2;
+    brc_lanes none = brc_lanes_all(0), half_kn = bond[VGCM_HALF_KN], half_ks = bond[VGCM_HALF_KS];
+    brc_lanes damage = p->dn + p->ds;
+    brc_mask was = vgcm_lanes_whole(p->damage_old), is = vgcm_lanes_whole(damage);
+    brc_lanes stored = half_kn * (p->pull * p->un),
+              stored_old = half_kn * (p->pull_old * p->un_old);
+    brc_lanes excess = half_kn * (p->pull_old * p->un - p->pull * p->un_old); /* work - stored */
+    brc_mask weakened = was & brc_lanes_less(p->damage_old, damage);
+    brc_lanes loss = brc_lanes_where(weakened, excess), lost = area * loss, left2 = p->force2;
     if (p->slides) {
         /* the plastic slip is along the trial force, of which 1 - part is cut off */
-        brc_wide off = 1 - p->part;
+        brc_lanes off = 1 - p->part;
         left2 *= p->part;
-        brc_wide slid = half_ks * (off * (p->s_old * p->s + p->t_old * p->t + left2));
-        brc_wide push = brc_wide_max(-p->pull, none);
-        brc_wide rub = (2 * law->mu) * half_kn * (push * (off * p->force));
-        rub = area * brc_wide_pick(was, brc_wide_min(rub, brc_wide_max(slid, none)), slid);
+        brc_lanes slid = half_ks * (off * (p->s_old * p->s + p->t_old * p->t + left2));
+        brc_lanes push = brc_lanes_max(-p->pull, none);
+        brc_lanes rub = (2 * law->mu) * half_kn * (push * (off * p->force));
+        rub = area * brc_lanes_pick(was, brc_lanes_min(rub, brc_lanes_max(slid, none)), slid);
         left2 *= p->part;
         lost += area * slid;
         if (flags & VGCM_LEDGER) {
@@ -273,28 +274,28 @@ VGCM_INLINE brc_wide vgcm_wide_account(const struct vgcm_law *law, const brc_wid
         }
     }
     if (flags & VGCM_LEDGER) {
-        brc_wide shear = half_ks * left2;
-        brc_wide shear_old = half_ks * (p->s_old * p->s_old + p->t_old * p->t_old);
-        brc_wide kept = stored - stored_old + (excess - loss) + (shear - shear_old);
+        brc_lanes shear = half_ks * left2;
+        brc_lanes shear_old = half_ks * (p->s_old * p->s_old + p->t_old * p->t_old);
+        brc_lanes kept = stored - stored_old + (excess - loss) + (shear - shear_old);
         e->damage += lost;
-        if (brc_wide_any(brc_wide_not(is))) {
-            const brc_wide all[2] = {stored, shear}, old[2] = {stored_old, shear_old};
-            vgcm_wide_account_broken(was, is, area, kept, all, old, stored - stored_old + excess,
-                                     e);
+        if (brc_lanes_any(~is)) {
+            const brc_lanes all[2] = {stored, shear}, old[2] = {stored_old, shear_old};
+            vgcm_lanes_account_broken(was, is, area, kept, all, old, stored - stored_old + excess,
+                                      e);
         } else {
             e->bond += area * kept;
         }
     }
-    return brc_wide_where(was, lost);
+    return brc_lanes_where(was, lost);
 }
 
 /* The bond of a contact with ks and the strengths of the law, in each place. */
-static inline void vgcm_wide_bond_of(const struct vgcm_bond *bond, brc_wide all[VGCM_N_BOND])
+static inline void vgcm_lanes_bond_of(const struct vgcm_bond *bond, brc_lanes all[VGCM_N_BOND])
 {
     brc_lanes lanes[VGCM_N_BOND];
     vgcm_lanes_bond(lanes, bond->law, brc_lanes_all(bond->kn));
     for (int k = 0; k < VGCM_N_BOND; k++)
-        all[k] = brc_wide_all(lanes[k][0]);
+        all[k] = brc_lanes_all(lanes[k][0]);
 }
 
 /* One point alone. */
@@ -303,22 +304,22 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
 {
     double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
     double s = p->fs * inv - du[1], t = p->ft * inv - du[2]; /* eq:vgcm:16, eq:vgcm:18 */
-    struct vgcm_point_wide q = {.dn = brc_wide_all(p->dn),
-                                .ds = brc_wide_all(p->ds),
-                                .un = brc_wide_all(p->un + du[0]), /* eq:vgcm:14 */
-                                .un_old = brc_wide_all(p->un),
-                                .damage_old = brc_wide_all(p->dn + p->ds),
-                                .s_old = brc_wide_all(p->fs * inv),
-                                .t_old = brc_wide_all(p->ft * inv),
-                                .s = brc_wide_all(s),
-                                .t = brc_wide_all(t),
-                                .force2 = brc_wide_all(s * s + t * t)};
-    struct vgcm_energy_wide sum = {.bond = brc_wide_all(0)};
-    brc_wide all[VGCM_N_BOND];
-    vgcm_wide_bond_of(bond, all);
-    vgcm_wide_open(bond->law, all, flags, &q);
-    vgcm_wide_slide(bond->law, all, flags, &q);
-    p->lost += vgcm_wide_account(bond->law, all, flags, brc_wide_all(area), &q, &sum)[0];
+    struct vgcm_point_lanes q = {.dn = brc_lanes_all(p->dn),
+                                 .ds = brc_lanes_all(p->ds),
+                                 .un = brc_lanes_all(p->un + du[0]), /* eq:vgcm:14 */
+                                 .un_old = brc_lanes_all(p->un),
+                                 .damage_old = brc_lanes_all(p->dn + p->ds),
+                                 .s_old = brc_lanes_all(p->fs * inv),
+                                 .t_old = brc_lanes_all(p->ft * inv),
+                                 .s = brc_lanes_all(s),
+                                 .t = brc_lanes_all(t),
+                                 .force2 = brc_lanes_all(s * s + t * t)};
+    struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
+    brc_lanes all[VGCM_N_BOND];
+    vgcm_lanes_bond_of(bond, all);
+    vgcm_lanes_open(bond->law, all, flags, &q);
+    vgcm_lanes_slide(bond->law, all, flags, &q);
+    p->lost += vgcm_lanes_account(bond->law, all, flags, brc_lanes_all(area), &q, &sum)[0];
     p->un = q.un[0];
     p->fn = kn * q.pull[0];
     p->fs = ks * (q.part[0] * s);
@@ -354,13 +355,13 @@ static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const
 static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags, double area,
                                      const struct vgcm_point *p)
 {
-    struct vgcm_point_wide q = {.dn = brc_wide_all(p->dn),
-                                .un = brc_wide_all(p->un),
-                                .un_old = brc_wide_all(p->un),
-                                .damage_old = brc_wide_all(p->dn + p->ds)};
-    brc_wide all[VGCM_N_BOND];
-    vgcm_wide_bond_of(bond, all);
-    vgcm_wide_open(bond->law, all, flags, &q);
+    struct vgcm_point_lanes q = {.dn = brc_lanes_all(p->dn),
+                                 .un = brc_lanes_all(p->un),
+                                 .un_old = brc_lanes_all(p->un),
+                                 .damage_old = brc_lanes_all(p->dn + p->ds)};
+    brc_lanes all[VGCM_N_BOND];
+    vgcm_lanes_bond_of(bond, all);
+    vgcm_lanes_open(bond->law, all, flags, &q);
     return bond->kn * area * q.pull_old[0];
 }
 

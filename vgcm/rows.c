@@ -118,10 +118,10 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
         for (size_t j = 0; j < (size_t)n; j++) {
             size_t to = (size_t)(c->p0[i] + old) + j;
             brc_sub(r, x[j], origin);
-            p->s[to] = brc_dot(r, f->s[i]);
-            p->t[to] = brc_dot(r, t);
+            p->law[to][VGCM_AT_S] = brc_dot(r, f->s[i]);
+            p->law[to][VGCM_AT_T] = brc_dot(r, t);
             p->h[to] = brc_dot(r, f->n[i]);
-            p->area[to] = area[j];
+            p->law[to][VGCM_AREA] = area[j];
         }
     }
     free(x);
@@ -138,7 +138,7 @@ static void set_moments(struct brc_contacts *c, size_t i)
     for (int k = 0; k < VGCM_N_MOMENTS; k++)
         m[k] = 0;
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
-        double area = p->area[j], s = p->s[j], t = p->t[j];
+        double area = p->law[j][VGCM_AREA], s = p->law[j][VGCM_AT_S], t = p->law[j][VGCM_AT_T];
         m[VGCM_A] += area;
         m[VGCM_A_S] += area * s;
         m[VGCM_A_T] += area * t;
@@ -234,14 +234,14 @@ static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *p
     brc_cross(t, f->n[i], f->s[i]);
     for (size_t j = to; j < end; j++) {
         brc_copy(x, sim->bodies.x[c->a[i]]);
-        brc_axpy(x, p->s[j], f->s[i]);
-        brc_axpy(x, p->t[j], t);
+        brc_axpy(x, p->law[j][VGCM_AT_S], f->s[i]);
+        brc_axpy(x, p->law[j][VGCM_AT_T], t);
         if (offset_of(&sim->bodies, x, platen) > platen->half_width)
             continue;
-        p->s[to] = p->s[j];
-        p->t[to] = p->t[j];
+        p->law[to][VGCM_AT_S] = p->law[j][VGCM_AT_S];
+        p->law[to][VGCM_AT_T] = p->law[j][VGCM_AT_T];
         p->h[to] = platen->grip == BRC_GRIP_NONE ? p->h[j] : above;
-        p->area[to++] = p->area[j];
+        p->law[to++][VGCM_AREA] = p->law[j][VGCM_AREA];
     }
     c->np[i] = (int32_t)(to - (size_t)c->p0[i]);
 }
@@ -253,7 +253,9 @@ static void set_wall_stiffness(struct brc_contacts *c, size_t i, const struct vg
     const struct vgcm_points *p = vgcm_point_columns(c);
     double k = f->kn[i] * fmax(1, law->eta), moment = 0;
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++)
-        moment += p->area[j] * (p->s[j] * p->s[j] + p->t[j] * p->t[j] + p->h[j] * p->h[j]);
+        moment += p->law[j][VGCM_AREA] *
+                  (p->law[j][VGCM_AT_S] * p->law[j][VGCM_AT_S] +
+                   p->law[j][VGCM_AT_T] * p->law[j][VGCM_AT_T] + p->h[j] * p->h[j]);
     brc_set(c->k[i], k * f->moment[i][VGCM_A], k * moment, 0);
 }
 
@@ -393,12 +395,12 @@ static int sphere_row(struct brc_sim *sim, const struct vgcm_law *law, struct br
     f->plane[i] = (ra - rb) / 2;
     f->rest[i] = fmin(touch, now);
     c->gap[i] = fmax(now - touch, 0);
-    p->area[c->p0[i]] = BRC_PI * fmin(ra, rb) * fmin(ra, rb);
+    p->law[c->p0[i]][VGCM_AREA] = BRC_PI * fmin(ra, rb) * fmin(ra, rb);
     if (is_wall) {
         const struct brc_platen *platen = brc_sim_platen(sim, pair[1]);
         brc_scale(f->n[i], platen->n, -1);
         brc_copy(f->s[i], platen->across);
-        double k = f->kn[i] * fmax(1, law->eta) * p->area[c->p0[i]];
+        double k = f->kn[i] * fmax(1, law->eta) * p->law[c->p0[i]][VGCM_AREA];
         brc_set(c->k[i], k, k * touch * touch, 0);
     }
     set_moments(c, i);

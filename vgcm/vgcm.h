@@ -57,55 +57,50 @@ struct vgcm_bodies {
 /* A row is a sphere contact (new neighbours), or a facet. The displacement of a facet's points is
  * the affine field u: exact, not an approximation, as each point's increment is affine in its
  * place. While no point has been damaged nothing else is kept; then its plastic slip and damage.
- * The slip of a broken point that is open is not kept: it is the whole displacement. */
-enum vgcm_phase { VGCM_SPHERE, VGCM_AFFINE, VGCM_POINTS };
+ * The slip of a broken point that is open is not kept: it is the whole displacement. A facet is
+ * loose where all of its points are broken and surely open: it has no forces. */
+enum vgcm_phase { VGCM_SPHERE, VGCM_AFFINE, VGCM_POINTS, VGCM_LOOSE, VGCM_N_PHASES };
 
 /* order of generalised displacements and forces in the contact frame */
 enum { VGCM_OPEN, VGCM_S, VGCM_T, VGCM_TWIST, VGCM_BEND_S, VGCM_BEND_T, VGCM_N_MOTION };
 /* order of the area moments about the reference point: sums of A, A s, A t, A s s, A s t, A t t */
 enum { VGCM_A, VGCM_A_S, VGCM_A_T, VGCM_A_SS, VGCM_A_ST, VGCM_A_TT, VGCM_N_MOMENTS };
-/* order of what makes the forces of points that rest: the moments of the areas that are left for
- * normal forces; of whole points A, A s, A t, A (s s + t t), and the generalised plastic slip */
+/* order of what is kept of a point: place in the contact plane [m], area [m2], energy dissipated
+ * until the damage was 1 [J]; plastic slip, which is the shear force on b over the stiffness plus
+ * the slip [m], damage by opening and by slip. One line of a cache. */
 enum {
-    VGCM_HELD_A = VGCM_N_MOMENTS,
-    VGCM_HELD_A_S,
-    VGCM_HELD_A_T,
-    VGCM_HELD_POLAR,
-    VGCM_HELD_SLIP_S,
-    VGCM_HELD_SLIP_T,
-    VGCM_HELD_SLIP_TWIST,
-    VGCM_N_HELD
+    VGCM_AT_S,
+    VGCM_AT_T,
+    VGCM_AREA,
+    VGCM_LOST,
+    VGCM_SLIP_S,
+    VGCM_SLIP_T,
+    VGCM_DN,
+    VGCM_DS,
+    VGCM_N_POINT
 };
 
-#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR)                                                        \
-    SCALAR(uint8_t, phase, BRC_STATE, "1", "0 sphere contact, 1 affine facet, 2 facet of points")  \
-    SCALAR(double, kn, BRC_STATE, "Pa m-1", "normal stiffness per unit area")                      \
-    SCALAR(double, plane, BRC_STATE, "m", "facet plane at d/2 + plane from a along n")             \
-    SCALAR(double, rim, BRC_STATE, "m", "largest distance of a point from the reference point")    \
-    SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0")    \
-    VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")      \
-    VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")         \
-    VECTOR(double, u, 6, BRC_STATE, "m, 1", "facets: opening, slip s t, turn about n s t")         \
-    VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt")    \
-    VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")          \
-    SCALAR(double, slack, BRC_STATE, "m", "points: motion in which none of them changes; 0: some") \
-    VECTOR(double, held, 13, BRC_STATE, "m2, m3, m4", "points with slack: sums for their forces")
+#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR)                                                     \
+    SCALAR(uint8_t, phase, BRC_STATE, "1",                                                      \
+           "0 sphere contact, facets: 1 affine, 2 points, 3 loose")                             \
+    SCALAR(double, kn, BRC_STATE, "Pa m-1", "normal stiffness per unit area")                   \
+    SCALAR(double, plane, BRC_STATE, "m", "facet plane at d/2 + plane from a along n")          \
+    SCALAR(double, rim, BRC_STATE, "m", "largest distance of a point from the reference point") \
+    SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0") \
+    VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")   \
+    VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")      \
+    VECTOR(double, u, 6, BRC_STATE, "m, 1", "facets: opening, slip s t, turn about n s t")      \
+    VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt") \
+    VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")
 
 struct vgcm_contacts {
     VGCM_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
 
-#define VGCM_POINT_FIELDS(SCALAR, VECTOR)                                             \
-    SCALAR(double, s, BRC_STATE, "m", "place in the contact plane")                   \
-    SCALAR(double, t, BRC_STATE, "m", "place in the contact plane")                   \
-    SCALAR(double, h, BRC_STATE, "m", "platens: height over the centre of a along n") \
-    SCALAR(double, area, BRC_STATE, "m2", "area that the point stands for")           \
-    SCALAR(double, un, BRC_STATE, "m", "platens: opening; facets have it from u")     \
-    SCALAR(double, slip_s, BRC_STATE, "m", "shear force on b along s over k, plus u") \
-    SCALAR(double, slip_t, BRC_STATE, "m", "the same along t: the plastic slip")      \
-    SCALAR(double, dn, BRC_STATE, "1", "damage by opening")                           \
-    SCALAR(double, ds, BRC_STATE, "1", "damage by slip")                              \
-    SCALAR(double, lost, BRC_STATE, "J", "energy dissipated until damage was 1")
+#define VGCM_POINT_FIELDS(SCALAR, VECTOR)                                                      \
+    VECTOR(double, law, 8, BRC_STATE, "m, m2, J, 1", "s, t, area, lost, slip s t, damage n s") \
+    SCALAR(double, h, BRC_STATE, "m", "platens: height over the centre of a along n")          \
+    SCALAR(double, un, BRC_STATE, "m", "platens: opening; facets have it from u")
 
 struct vgcm_points {
     VGCM_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)

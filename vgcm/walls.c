@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop over contacts of grains with platens. The points of boundary facets ride on the grain:
  * frame (n, s, t) of the row turns with it and a point is at h n + s s + t t from the centre. The
- * contact's own frame is fixed by the platen: normal out of the grain, against the platen's. */
+ * contact's own frame is fixed by the platen: normal out of the grain, against the platen's. All
+ * vectors of a row are in that frame until its forces are summed up. */
 #include "vgcm/contact.h"
 
 struct wall {
@@ -13,39 +14,57 @@ struct wall {
     struct vgcm_law law; /* with the platen's friction */
     struct vgcm_bond bond;
     struct vgcm_energy energy;
-    double frame[3][3];      /* normal from grain to platen, two axes of the platen's plane */
-    double riding[3][3];     /* frame that rides on the grain */
-    double move[3];          /* m, of the platen against the grain's centre in this step */
-    double turn[3];          /* rad, of the grain in this step */
-    double viscosity;        /* viscous force over area and increment */
-    double drag[6], viscous; /* viscous force on the platen and its moment about the grain; J */
-    double gap;              /* m, smallest opening */
+    double frame[3][3];       /* in space: normal from grain to platen, two axes of its plane */
+    double riding[3][3];      /* frame that rides on the grain */
+    double move[3];           /* m, of the platen against the grain's centre in this step */
+    double turn[3];           /* rad, of the grain in this step */
+    double viscosity;         /* viscous force over area and increment */
+    double force[6], drag[6]; /* on the platen, moment about the grain; viscous part of it */
+    double viscous;           /* J */
+    double gap;               /* m, smallest opening */
 };
+
+/* A vector of space in the contact's frame. */
+static void to_frame(const struct wall *w, double r[3], const double v[3])
+{
+    for (int k = 0; k < 3; k++)
+        r[k] = brc_dot(v, w->frame[k]);
+}
+
+static void to_space(const struct wall *w, double v[3], const double r[3])
+{
+    brc_scale(v, w->frame[0], r[0]);
+    brc_axpy(v, r[1], w->frame[1]);
+    brc_axpy(v, r[2], w->frame[2]);
+}
 
 static void set_frames(struct wall *w, size_t i)
 {
     const struct brc_bodies *b = &w->sim->bodies;
     size_t a = (size_t)w->c->a[i];
-    double dt = w->sim->dt, q[4];
+    double dt = w->sim->dt, q[4], turn[3], move[3], across[3];
     brc_scale(w->frame[0], w->platen->n, -1);
     brc_copy(w->frame[1], w->platen->across);
     brc_cross(w->frame[2], w->frame[0], w->frame[1]);
-    brc_scale(w->turn, b->w[a], dt);
-    if (brc_norm2(w->turn) > 0) {
-        brc_quat_from_rotation(q, w->turn);
+    brc_scale(turn, b->w[a], dt);
+    if (brc_norm2(turn) > 0) {
+        brc_quat_from_rotation(q, turn);
         brc_quat_rotate(w->f->n[i], q, w->f->n[i]);
         brc_quat_rotate(w->f->s[i], q, w->f->s[i]);
         brc_normalise(w->f->n[i], w->f->n[i]);
         brc_normalise(w->f->s[i], w->f->s[i]);
     }
-    brc_copy(w->riding[0], w->f->n[i]);
-    brc_copy(w->riding[1], w->f->s[i]);
-    brc_cross(w->riding[2], w->riding[0], w->riding[1]);
-    brc_sub(w->move, b->v[w->c->b[i]], b->v[a]);
-    brc_scale(w->move, w->move, dt);
+    brc_cross(across, w->f->n[i], w->f->s[i]);
+    brc_sub(move, b->v[w->c->b[i]], b->v[a]);
+    brc_scale(move, move, dt);
+    to_frame(w, w->turn, turn);
+    to_frame(w, w->move, move);
+    to_frame(w, w->riding[0], w->f->n[i]);
+    to_frame(w, w->riding[1], w->f->s[i]);
+    to_frame(w, w->riding[2], across);
 }
 
-/* Motion of the platen against the grain's point at r in the contact's frame: opening, slips. */
+/* Motion of the platen against the grain's point at r: opening, slips. */
 static void relative_motion(const struct wall *w, const double r[3], double du[3])
 {
     double swing[3], middle[3];
@@ -53,9 +72,7 @@ static void relative_motion(const struct wall *w, const double r[3], double du[3
     brc_copy(middle, r);
     brc_axpy(middle, -0.5, swing); /* the arm halfway through the step */
     brc_cross(swing, w->turn, middle);
-    brc_sub(middle, w->move, swing);
-    for (int k = 0; k < 3; k++)
-        du[k] = brc_dot(middle, w->frame[k]);
+    brc_sub(du, w->move, swing);
 }
 
 /* A gripped point: springs both ways that never break. */
@@ -72,7 +89,7 @@ static void step_grip(struct wall *w, double area, const double du[3], struct vg
     w->energy.shear -= 0.5 * ((old[1] + q->fs) * du[1] + (old[2] + q->ft) * du[2]);
 }
 
-/* Viscous force on the platen in the contact's frame; a plain contact is never pulled by it. */
+/* Viscous force on the platen; a plain contact is never pulled by it. */
 static void point_drag(const struct wall *w, double area, const double du[3],
                        const struct vgcm_point *q, double drag[3])
 {
@@ -86,39 +103,22 @@ static void point_drag(const struct wall *w, double area, const double du[3],
         drag[0] = q->fn;
 }
 
-/* Adds a force on the platen, given in the contact's frame, at the arm r of the grain. */
-static void add_force(struct wall *w, size_t i, const double part[3], const double r[3])
+/* Adds a force at the arm r of the grain to a sum of forces and moments. */
+static void add_force(double sum[6], const double part[3], const double r[3])
 {
-    const struct brc_bodies *b = &w->sim->bodies;
-    double force[3] = {0, 0, 0}, arm[3], moment[3];
-    for (int k = 0; k < 3; k++)
-        brc_axpy(force, part[k], w->frame[k]);
-    brc_axpy(w->c->f[i], 1, force);
-    brc_cross(moment, r, force);
-    brc_axpy(w->c->ta[i], -1, moment);
-    brc_add(arm, b->x[w->c->a[i]], r);
-    brc_sub(arm, arm, b->x[w->c->b[i]]);
-    brc_cross(moment, arm, force);
-    brc_axpy(w->c->tb[i], 1, moment);
-}
-
-static void add_drag(struct wall *w, const double part[3], const double r[3])
-{
-    double force[3] = {0, 0, 0}, moment[3];
-    for (int k = 0; k < 3; k++)
-        brc_axpy(force, part[k], w->frame[k]);
-    brc_cross(moment, r, force);
+    double moment[3];
+    brc_cross(moment, r, part);
     for (int k = 0; k < 3; k++) {
-        w->drag[k] += force[k];
-        w->drag[3 + k] += moment[k];
+        sum[k] += part[k];
+        sum[3 + k] += moment[k];
     }
 }
 
-/* Point j of row i, at the arm r of the grain, with the opening un. */
-static void step_point(struct wall *w, size_t i, size_t j, int flags, const double r[3], double un)
+/* Point j of a row, at the arm r of the grain, with the opening un. */
+static void step_point(struct wall *w, size_t j, int flags, const double r[3], double un)
 {
     struct vgcm_points *p = w->p;
-    double area = p->area[j], du[3];
+    double area = p->law[j][VGCM_AREA], du[3];
     bool is_grip = w->platen->grip != BRC_GRIP_NONE;
     relative_motion(w, r, du);
     struct vgcm_point q = vgcm_point_at(p, j, un - du[0], w->bond.ks * area);
@@ -129,11 +129,10 @@ static void step_point(struct wall *w, size_t i, size_t j, int flags, const doub
     p->un[j] = un;
     vgcm_point_put(p, j, w->bond.ks * area, &q);
     double part[3] = {-q.fn, q.fs, q.ft}; /* eq:vgcm:19 */
-    add_force(w, i, part, r);
+    add_force(w->force, part, r);
     if (flags & VGCM_VISCOUS) {
         point_drag(w, area, du, &q, part);
-        add_force(w, i, part, r);
-        add_drag(w, part, r);
+        add_force(w->drag, part, r);
     }
     w->gap = un < w->gap ? un : w->gap;
 }
@@ -146,8 +145,10 @@ static void account_drag(struct wall *w, size_t i)
         double moment = 0.5 * (w->f->drag[i][3 + k] + w->drag[3 + k]);
         w->viscous += moment * w->turn[k] - force * w->move[k];
     }
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; k++) {
         w->f->drag[i][k] = w->drag[k];
+        w->force[k] += w->drag[k];
+    }
 }
 
 static void begin_row(struct wall *w, size_t i)
@@ -162,11 +163,23 @@ static void begin_row(struct wall *w, size_t i)
                                      (w->f->moment[i][VGCM_A] * sim->dt)
                                : 0;
     for (int k = 0; k < 6; k++)
-        w->drag[k] = 0;
-    brc_set(c->f[i], 0, 0, 0);
-    brc_set(c->ta[i], 0, 0, 0);
-    brc_set(c->tb[i], 0, 0, 0);
+        w->force[k] = w->drag[k] = 0;
     set_frames(w, i);
+}
+
+/* Force on the platen and moments about both centres, in space. */
+static void finish_row(const struct wall *w, size_t i)
+{
+    const struct brc_bodies *b = &w->sim->bodies;
+    struct brc_contacts *c = w->c;
+    double moment[3], arm[3];
+    to_space(w, c->f[i], w->force);
+    to_space(w, moment, w->force + 3);
+    brc_scale(c->ta[i], moment, -1);
+    brc_sub(arm, b->x[c->a[i]], b->x[c->b[i]]);
+    brc_cross(c->tb[i], arm, c->f[i]);
+    brc_add(c->tb[i], c->tb[i], moment);
+    c->gap[i] = w->gap;
 }
 
 static void step_row(struct wall *w, size_t i, int flags)
@@ -177,20 +190,18 @@ static void step_row(struct wall *w, size_t i, int flags)
     brc_sub(height, b->x[w->c->a[i]], b->x[w->c->b[i]]);
     double above = brc_dot(height, w->platen->n);
     for (size_t j = (size_t)w->c->p0[i], end = j + (size_t)w->c->np[i]; j < end; j++) {
-        double r[3], un = above - w->f->rest[i];
-        if (w->f->phase[i] == VGCM_SPHERE) {
-            brc_scale(r, w->platen->n, -above);
-        } else {
+        double r[3] = {above, 0, 0}, un = above - w->f->rest[i];
+        if (w->f->phase[i] != VGCM_SPHERE) {
             brc_scale(r, w->riding[0], w->p->h[j]);
-            brc_axpy(r, w->p->s[j], w->riding[1]);
-            brc_axpy(r, w->p->t[j], w->riding[2]);
-            un = above + brc_dot(r, w->platen->n);
+            brc_axpy(r, w->p->law[j][VGCM_AT_S], w->riding[1]);
+            brc_axpy(r, w->p->law[j][VGCM_AT_T], w->riding[2]);
+            un = above - r[0];
         }
-        step_point(w, i, j, flags, r, un);
+        step_point(w, j, flags, r, un);
     }
-    w->c->gap[i] = w->gap;
     if (flags & VGCM_VISCOUS)
         account_drag(w, i);
+    finish_row(w, i);
 }
 
 void vgcm_walls(struct brc_sim *sim, const struct vgcm_law *law, int flags)

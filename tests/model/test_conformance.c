@@ -104,6 +104,8 @@ static void gather_is_the_sum_of_rows(void **state)
         }
         const struct brc_contacts *sets[2] = {&f->sim.pairs, &f->sim.platens};
         double size = 1e-300;
+        /* the moments of pairs are not kept where the model adds them itself */
+        bool has_moments = !(f->sim.model.flags & BRC_MODEL_ADDS);
         for (int c = 0; c < 2; c++)
             for (size_t r = 0; r < sets[c]->n; r++) {
                 const int32_t end[2] = {sets[c]->a[r], sets[c]->b[r]};
@@ -115,7 +117,8 @@ static void gather_is_the_sum_of_rows(void **state)
             }
         for (size_t k = 0; k < b->n; k++) {
             CHECK_NEAR(brc_norm(sums[k]), 0, 1e-13 * size, 0);
-            CHECK_NEAR(brc_norm(sums[k] + 3), 0, 1e-13 * size * H, 0);
+            if (has_moments)
+                CHECK_NEAR(brc_norm(sums[k] + 3), 0, 1e-13 * size * H, 0);
         }
         test_free(sums);
     }

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows that have left the elastic range in the loop over contacts (forces.h): the law of their
+ * points, one point of each of four rows at a time. */
+#ifndef VGCM_DAMAGED_H
+#define VGCM_DAMAGED_H
+
+#include "vgcm/four.h"
+
+/* What the points of four rows have in common, and their sums. */
+struct facets {
+    double *first[BRC_LANES]; /* the first points */
+    int32_t np[BRC_LANES], most;
+    brc_lanes bond[VGCM_N_BOND], drag; /* drag: viscosity per area */
+    brc_lanes force[VGCM_N_MOTION], drags[VGCM_N_MOTION];
+};
+
+/* Viscous force of points, c: viscosity times area. A broken point that is open has none, and one
+ * that is closed is never pulled by it (fn: its normal force). */
+VGCM_INLINE void point_drag(brc_lanes drag[VGCM_N_MOTION], brc_lanes c, const brc_lanes du[3],
+                            brc_mask whole, brc_lanes un, brc_lanes fn, brc_lanes s, brc_lanes t)
+{
+    brc_lanes pull = c * du[0], none = brc_lanes_all(0);
+    brc_mask closed = brc_lanes_less(un, none);
+    pull = brc_lanes_pick(whole, pull, brc_lanes_where(closed, brc_lanes_min(pull, -fn)));
+    brc_lanes fs = -c * du[1], ft = -c * du[2];
+    vgcm_force_add(drag, pull, brc_lanes_where(whole | closed, fs),
+                   brc_lanes_where(whole | closed, ft), s, t);
+}
+
+/* Point j of row i has just broken. */
+static void add_event(const struct loop *l, size_t i, size_t j)
+{
+    const struct brc_contacts *c = l->c;
+    const double *point = l->p->law[j];
+    double t[3], branch[3], *xa = l->sim->bodies.x[c->a[i]];
+    struct brc_event event = {.a = c->a[i],
+                              .b = c->b[i],
+                              .facet = c->facet[i],
+                              .point = (int32_t)(j - (size_t)c->p0[i]),
+                              .mode = point[VGCM_DN] >= point[VGCM_DS] ? BRC_MODE_TENSION
+                                                                       : BRC_MODE_SHEAR,
+                              .area = point[VGCM_AREA],
+                              .energy = point[VGCM_LOST]};
+    brc_sub(branch, l->sim->bodies.x[c->b[i]], xa);
+    brc_cross(t, l->f->n[i], l->f->s[i]);
+    brc_copy(event.n, l->f->n[i]);
+    brc_copy(event.x, xa);
+    brc_axpy(event.x, 0.5 * brc_norm(branch) + l->f->plane[i], l->f->n[i]);
+    brc_axpy(event.x, point[VGCM_AT_S], l->f->s[i]);
+    brc_axpy(event.x, point[VGCM_AT_T], t);
+    brc_events_add(l->sim->ctx, &l->sim->events, l->sim->step, &event);
+    bool is_whole = false;
+    for (size_t k = (size_t)c->p0[i], end = k + (size_t)c->np[i]; k < end; k++)
+        is_whole |= l->p->law[k][VGCM_DN] + l->p->law[k][VGCM_DS] < 1;
+    c->status[i] = is_whole ? BRC_INTACT : BRC_BROKEN;
+}
+
+static __attribute__((noinline)) void add_events(const struct loop *l, const struct four *x,
+                                                 int32_t k, const int32_t np[BRC_LANES],
+                                                 brc_mask broke)
+{
+    for (int lane = 0; lane < BRC_LANES; lane++)
+        if (broke[lane] && k < np[lane])
+            add_event(l, (size_t)x->rows.at[lane], (size_t)(l->c->p0[x->rows.at[lane]] + k));
+}
+
+/* Opening and trial shear force of points, from their state and the field of their row. The slip of
+ * those that were broken and open is the whole displacement. */
+VGCM_INLINE void begin_points(const struct four *x, const brc_lanes place[4],
+                              const brc_lanes own[4], brc_lanes du[3], struct vgcm_point_lanes *w)
+{
+    enum { OWN = VGCM_SLIP_S };
+    brc_lanes at[3];
+    vgcm_motion_at(at, x->u, place[VGCM_AT_S], place[VGCM_AT_T]);
+    vgcm_motion_at(du, x->m.du, place[VGCM_AT_S], place[VGCM_AT_T]);
+    w->dn = own[VGCM_DN - OWN];
+    w->ds = own[VGCM_DS - OWN];
+    w->damage_old = w->dn + w->ds;
+    w->un = at[0];
+    w->un_old = at[0] - du[0];
+    w->loose = brc_lanes_less(brc_lanes_all(0), w->un_old) & ~vgcm_lanes_whole(w->damage_old);
+    w->slip_s = brc_lanes_pick(w->loose, at[1] - du[1], own[VGCM_SLIP_S - OWN]);
+    w->slip_t = brc_lanes_pick(w->loose, at[2] - du[2], own[VGCM_SLIP_T - OWN]);
+    w->s = w->slip_s - at[1]; /* eq:vgcm:16, eq:vgcm:18 */
+    w->t = w->slip_t - at[2];
+    w->s_old = w->s + du[1];
+    w->t_old = w->t + du[2];
+    w->force2 = w->s * w->s + w->t * w->t;
+}
+
+/* Writes what has changed of the points' states. */
+VGCM_INLINE void write_points(double *const point[BRC_LANES], const struct vgcm_point_lanes *w,
+                              brc_lanes fs, brc_lanes ft, brc_mask grows, brc_lanes lost)
+{
+    bool grow = brc_lanes_any(grows);
+    if (!grow && !w->slides && !brc_lanes_any(w->loose))
+        return;
+    brc_lanes own[] = {w->slip_s - (w->s - fs), w->slip_t - (w->t - ft), w->dn, w->ds};
+    brc_lanes_transpose(own);
+    for (int k = 0; k < BRC_LANES; k++)
+        brc_lanes_put(point[k] + VGCM_SLIP_S, own[k]);
+    for (int k = 0; grow && k < BRC_LANES; k++)
+        point[k][VGCM_LOST] += brc_lanes_where(grows, lost)[k];
+}
+
+/* Points number k of four rows. Lanes without such a point work on none, which has no area. */
+VGCM_INLINE void step_points(struct loop *l, int flags, const struct four *x, struct facets *f,
+                             int32_t k, double none[VGCM_N_POINT])
+{
+    double *at[BRC_LANES];
+    const double *own_at[BRC_LANES];
+    struct vgcm_point_lanes w;
+    brc_lanes place[4], own[4], du[3];
+    for (int lane = 0; lane < BRC_LANES; lane++) {
+        at[lane] = k < f->np[lane] ? f->first[lane] + VGCM_N_POINT * k : none;
+        own_at[lane] = at[lane] + VGCM_SLIP_S;
+    }
+    brc_lanes_gather4(place, (const double *const *)at);
+    brc_lanes_gather4(own, own_at);
+    brc_lanes s = place[VGCM_AT_S], t = place[VGCM_AT_T], area = place[VGCM_AREA];
+    begin_points(x, place, own, du, &w);
+    vgcm_lanes_open(l->law, f->bond, flags, &w);
+    vgcm_lanes_slide(l->law, f->bond, flags, &w);
+    brc_lanes lost = vgcm_lanes_account(l->law, f->bond, flags, area, &w, &l->booked.points);
+    brc_lanes fs = w.part * w.s, ft = w.part * w.t, damage = w.dn + w.ds;
+    write_points(at, &w, fs, ft, brc_lanes_less(w.damage_old, damage), lost);
+    vgcm_force_add(f->force, area * w.pull, area * fs, area * ft, s, t);
+    brc_mask is = vgcm_lanes_whole(damage), broke = vgcm_lanes_whole(w.damage_old) & ~is;
+    if (brc_lanes_any(broke))
+        add_events(l, x, k, f->np, broke);
+    if (flags & VGCM_VISCOUS)
+        point_drag(f->drags, area * f->drag, du, is, w.un,
+                   area * w.pull * (2 * f->bond[VGCM_HALF_KN]), s, t);
+}
+
+/* Generalised forces of four rows from the sums over their points. */
+VGCM_INLINE void sum_points(struct loop *l, int flags, struct four *x, const struct facets *f)
+{
+    brc_lanes kn = 2 * f->bond[VGCM_HALF_KN], ks = 2 * f->bond[VGCM_HALF_KS];
+    for (int k = 0; k < VGCM_N_MOTION; k++) {
+        bool is_normal = k == VGCM_OPEN || k == VGCM_BEND_S || k == VGCM_BEND_T;
+        x->sum[k] = (is_normal ? kn : ks) * f->force[k];
+    }
+    if (flags & VGCM_VISCOUS)
+        add_drag(l, x, flags, f->drags);
+}
+
+/* Rows that are broken and surely open all over are loose from now on. */
+VGCM_INLINE void let_loose(const struct loop *l, const struct four *x)
+{
+    brc_lanes range[2];
+    openings_of(range, x->u, vgcm_at(l->f->rim, &x->rows));
+    brc_mask open = brc_lanes_less(brc_lanes_all(0), range[0]);
+    for (int k = 0; brc_lanes_any(open) && k < BRC_LANES; k++)
+        if (open[k] && l->c->status[x->rows.at[k]] == BRC_BROKEN)
+            l->f->phase[x->rows.at[k]] = VGCM_LOOSE;
+}
+
+VGCM_INLINE void begin_facets(const struct loop *l, int flags, const struct four *x,
+                              struct facets *f)
+{
+    vgcm_lanes_bond(f->bond, l->law, vgcm_at(l->f->kn, &x->rows));
+    if (flags & VGCM_VISCOUS)
+        f->drag = drag_of(l, &x->rows);
+    for (int k = 0; k < VGCM_N_MOTION; k++)
+        f->force[k] = f->drags[k] = brc_lanes_all(0);
+    f->most = 0;
+    for (int lane = 0; lane < BRC_LANES; lane++) {
+        int32_t row = x->rows.at[lane];
+        f->np[lane] = x->live[lane] ? l->c->np[row] : 0;
+        f->most = f->np[lane] > f->most ? f->np[lane] : f->most;
+        f->first[lane] = l->p->law[l->c->p0[row]];
+    }
+}
+
+/* Four rows of points from end to end. */
+VGCM_INLINE void damaged_four(struct loop *l, int flags, struct four *x)
+{
+    double none[VGCM_N_POINT] = {0};
+    struct facets f;
+    move_four(l, x);
+    write_motion(l, x);
+    begin_facets(l, flags, x, &f);
+    for (int32_t k = 0; k < f.most; k++)
+        step_points(l, flags, x, &f, k, none);
+    sum_points(l, flags, x, &f);
+    apply_forces(l, x);
+    let_loose(l, x);
+}
+
+/* Sorts the rows by their numbers of points, so that four take as many steps as each of them. */
+static void sort_by_points(struct queue *q, const int32_t *np)
+{
+    enum { KEYS = 32 };
+    int32_t sorted[CHUNK], start[KEYS + 1] = {0};
+    for (int i = 0; i < q->n; i++)
+        start[1 + (np[q->row[i]] < KEYS - 1 ? np[q->row[i]] : KEYS - 1)]++;
+    for (int k = 0; k < KEYS; k++)
+        start[k + 1] += start[k];
+    for (int i = 0; i < q->n; i++)
+        sorted[start[np[q->row[i]] < KEYS - 1 ? np[q->row[i]] : KEYS - 1]++] = q->row[i];
+    for (int i = 0; i < q->n; i++)
+        q->row[i] = sorted[i];
+}
+
+#endif
