@@ -14,7 +14,7 @@ struct booked {
 };
 
 /* Rows of a phase that wait for their turn. A row that leaves its phase waits once more. */
-enum { CHUNK = 256 };
+enum { CHUNK = 128 };
 struct queue {
     int n;
     int32_t row[CHUNK];
