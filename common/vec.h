@@ -120,12 +120,19 @@ static inline void brc_quat_rotate(double r[3], const double q[4], const double 
     brc_mat_mul(r, m, b);
 }
 
-/* Unit quaternion of a rotation by |phi| about phi. */
+/* Unit quaternion of a rotation by |phi| about phi. The turns of a step are small: their series are
+ * exact to round-off. */
 static inline void brc_quat_from_rotation(double q[4], const double phi[3])
 {
-    double angle = brc_norm(phi);
-    double s = angle > 0 ? sin(angle / 2) / angle : 0.5;
-    q[0] = cos(angle / 2);
+    double h2 = 0.25 * brc_norm2(phi), s;
+    if (h2 < 1e-3) {
+        s = 0.5 - h2 * (1.0 / 12 - h2 * (1.0 / 240 - h2 * (1.0 / 10080 - h2 * (1.0 / 725760))));
+        q[0] = 1 - h2 * (1.0 / 2 - h2 * (1.0 / 24 - h2 * (1.0 / 720 - h2 * (1.0 / 40320))));
+    } else {
+        double h = sqrt(h2);
+        s = 0.5 * sin(h) / h;
+        q[0] = cos(h);
+    }
     q[1] = s * phi[0];
     q[2] = s * phi[1];
     q[3] = s * phi[2];

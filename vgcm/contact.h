@@ -65,12 +65,11 @@ static inline struct vgcm_point vgcm_point_at(const struct vgcm_points *p, size_
         .un = un, .fs = ks * p->law[j][VGCM_SLIP_S], .ft = ks * p->law[j][VGCM_SLIP_T], .dn = 1};
 }
 
-static inline void vgcm_point_put(const struct vgcm_points *p, size_t j, double ks,
+static inline void vgcm_point_put(const struct vgcm_points *p, size_t j, double per_ks,
                                   const struct vgcm_point *q)
 {
-    double inv = ks > 0 ? 1 / ks : 0;
-    p->law[j][VGCM_SLIP_S] = inv * q->fs;
-    p->law[j][VGCM_SLIP_T] = inv * q->ft;
+    p->law[j][VGCM_SLIP_S] = per_ks * q->fs;
+    p->law[j][VGCM_SLIP_T] = per_ks * q->ft;
 }
 
 /* s1 is s, given with the normal n0, turned with the least rotation from n0 to n1 (tilt) and by phi

@@ -67,7 +67,7 @@ static void add_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
     const struct vgcm_points *p = vgcm_point_columns(c);
     bool is_grip = brc_sim_platen(sim, c->b[i])->grip != BRC_GRIP_NONE;
     double kn = vgcm_columns(c)->kn[i];
-    struct vgcm_bond bond = {.law = law, .kn = kn, .ks = law->eta * kn};
+    struct vgcm_bond bond = vgcm_springs_of(law, kn);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         struct vgcm_point q = vgcm_point_at(p, j, p->un[j], bond.ks * p->law[j][VGCM_AREA]);
         if (is_grip || q.un < 0)

@@ -147,7 +147,7 @@ static void sphere_forces(struct loop *l, int32_t i, int flags)
 {
     struct brc_contacts *c = l->c;
     struct four x = {.rows = {.at = {i, i, i, i}}, .live = brc_lanes_first(1)};
-    struct vgcm_bond bond = {.law = l->law, .kn = l->f->kn[i], .ks = l->law->eta * l->f->kn[i]};
+    struct vgcm_bond bond = vgcm_springs_of(l->law, l->f->kn[i]);
     size_t j = (size_t)c->p0[i];
     double area = l->p->law[j][VGCM_AREA];
     vgcm_motion_of(&l->sim->bodies, c, &x.rows, l->sim->dt, &x.m);
@@ -156,7 +156,7 @@ static void sphere_forces(struct loop *l, int32_t i, int flags)
     double du[3] = {x.m.du[VGCM_OPEN][0], x.m.du[VGCM_S][0], x.m.du[VGCM_T][0]};
     struct vgcm_point q = vgcm_point_at(l->p, j, c->gap[i] - du[0], bond.ks * area);
     vgcm_law_rub(&bond, area, du, &q, &l->booked.spheres);
-    vgcm_point_put(l->p, j, bond.ks * area, &q);
+    vgcm_point_put(l->p, j, bond.per_ks / area, &q);
     x.sum[VGCM_OPEN] = brc_lanes_all(q.fn);
     x.sum[VGCM_S] = brc_lanes_all(q.fs);
     x.sum[VGCM_T] = brc_lanes_all(q.ft);

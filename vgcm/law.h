@@ -32,6 +32,7 @@ struct vgcm_law {
 struct vgcm_bond {
     const struct vgcm_law *law;
     double kn, ks; /* Pa/m */
+    double per_ks; /* m/Pa, 0 without shear stiffness */
     double u0;     /* m, opening at the tensile strength */
     double wn, ws; /* m, displacement past the peak at which damage is 1 */
 };
@@ -139,16 +140,22 @@ VGCM_INLINE void vgcm_lanes_bond(brc_lanes bond[VGCM_N_BOND], const struct vgcm_
     bond[VGCM_HALF_KS] = 0.5 * ks;
 }
 
+/* Stiffness alone, of contacts without a bond. */
+static inline struct vgcm_bond vgcm_springs_of(const struct vgcm_law *law, double kn)
+{
+    double ks = law->eta * kn; /* eq:vgcm:29 */
+    return (struct vgcm_bond){.law = law, .kn = kn, .ks = ks, .per_ks = ks > 0 ? 1 / ks : 0};
+}
+
 static inline struct vgcm_bond vgcm_bond_of(const struct vgcm_law *law, double kn)
 {
+    struct vgcm_bond bond = vgcm_springs_of(law, kn);
     brc_lanes all[VGCM_N_BOND];
     vgcm_lanes_bond(all, law, brc_lanes_all(kn));
-    return (struct vgcm_bond){.law = law,
-                              .kn = kn,
-                              .ks = law->eta * kn,
-                              .u0 = all[VGCM_U0][0],
-                              .wn = 1 / all[VGCM_PER_WN][0],
-                              .ws = 1 / all[VGCM_PER_WS][0]};
+    bond.u0 = all[VGCM_U0][0];
+    bond.wn = 1 / all[VGCM_PER_WN][0];
+    bond.ws = 1 / all[VGCM_PER_WS][0];
+    return bond;
 }
 
 static inline double vgcm_law_damage(const struct vgcm_point *p)
@@ -337,13 +344,15 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
 static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const double du[3],
                                 struct vgcm_point *p, struct vgcm_energy *e)
 {
-    double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
+    double kn = bond->kn * area, ks = bond->ks * area, inv = bond->per_ks / area;
     double fn_old = p->un < 0 ? kn * p->un : 0, s_old = p->fs, t_old = p->ft;
     double s = s_old - ks * du[1], t = t_old - ks * du[2];
     p->un += du[0];
     p->fn = p->un < 0 ? kn * p->un : 0;
     double limit = -bond->law->mu * p->fn, force2 = s * s + t * t;
-    double part = limit * limit < force2 ? limit / sqrt(force2) : 1;
+    double part = 1;
+    if (limit * limit < force2)
+        part = limit > 0 ? limit / sqrt(force2) : 0;
     p->fs = part * s;
     p->ft = part * t;
     e->normal += 0.5 * (fn_old + p->fn) * du[0];

@@ -42,17 +42,18 @@ static void set_frames(struct wall *w, size_t i)
 {
     const struct brc_bodies *b = &w->sim->bodies;
     size_t a = (size_t)w->c->a[i];
-    double dt = w->sim->dt, q[4], turn[3], move[3], across[3];
+    double dt = w->sim->dt, q[4], m[3][3], turned[2][3], turn[3], move[3], across[3];
     brc_scale(w->frame[0], w->platen->n, -1);
     brc_copy(w->frame[1], w->platen->across);
     brc_cross(w->frame[2], w->frame[0], w->frame[1]);
     brc_scale(turn, b->w[a], dt);
     if (brc_norm2(turn) > 0) {
         brc_quat_from_rotation(q, turn);
-        brc_quat_rotate(w->f->n[i], q, w->f->n[i]);
-        brc_quat_rotate(w->f->s[i], q, w->f->s[i]);
-        brc_normalise(w->f->n[i], w->f->n[i]);
-        brc_normalise(w->f->s[i], w->f->s[i]);
+        brc_quat_matrix(m, q);
+        brc_mat_mul(turned[0], m, w->f->n[i]);
+        brc_mat_mul(turned[1], m, w->f->s[i]);
+        brc_normalise(w->f->n[i], turned[0]);
+        brc_normalise(w->f->s[i], turned[1]);
     }
     brc_cross(across, w->f->n[i], w->f->s[i]);
     brc_sub(move, b->v[w->c->b[i]], b->v[a]);
@@ -75,26 +76,27 @@ static void relative_motion(const struct wall *w, const double r[3], double du[3
     brc_sub(du, w->move, swing);
 }
 
-/* A gripped point: springs both ways that never break. */
-static void step_grip(struct wall *w, double area, const double du[3], struct vgcm_point *q)
+/* A gripped point: springs both ways that never break. Forces and energies are per area. */
+static void step_grip(const struct wall *w, const double du[3], struct vgcm_point *q,
+                      struct vgcm_energy *e)
 {
-    double kn = w->bond.kn * area, ks = w->bond.ks * area, old[3] = {kn * q->un, q->fs, q->ft};
+    double old[3] = {w->bond.kn * q->un, q->fs, q->ft};
     q->un += du[0];
-    q->fn = kn * q->un;
-    w->energy.normal += 0.5 * (old[0] + q->fn) * du[0];
+    q->fn = w->bond.kn * q->un;
+    e->normal += 0.5 * (old[0] + q->fn) * du[0];
     if (w->platen->grip == BRC_GRIP_AXIAL)
         return;
-    q->fs -= ks * du[1];
-    q->ft -= ks * du[2];
-    w->energy.shear -= 0.5 * ((old[1] + q->fs) * du[1] + (old[2] + q->ft) * du[2]);
+    q->fs -= w->bond.ks * du[1];
+    q->ft -= w->bond.ks * du[2];
+    e->shear -= 0.5 * ((old[1] + q->fs) * du[1] + (old[2] + q->ft) * du[2]);
 }
 
-/* Viscous force on the platen; a plain contact is never pulled by it. */
-static void point_drag(const struct wall *w, double area, const double du[3],
-                       const struct vgcm_point *q, double drag[3])
+/* Viscous force per area on the platen; a plain contact is never pulled by it. */
+static void point_drag(const struct wall *w, const double du[3], const struct vgcm_point *q,
+                       double drag[3])
 {
     for (int k = 0; k < 3; k++)
-        drag[k] = -w->viscosity * area * du[k];
+        drag[k] = -w->viscosity * du[k];
     if (w->platen->grip == BRC_GRIP_AXIAL)
         drag[1] = drag[2] = 0;
     if (w->platen->grip == BRC_GRIP_NONE && q->un >= 0)
@@ -103,10 +105,11 @@ static void point_drag(const struct wall *w, double area, const double du[3],
         drag[0] = q->fn;
 }
 
-/* Adds a force at the arm r of the grain to a sum of forces and moments. */
-static void add_force(double sum[6], const double part[3], const double r[3])
+/* Adds a force on an area at the arm r of the grain to a sum of forces and moments. */
+static void add_force(double sum[6], double area, const double per_area[3], const double r[3])
 {
-    double moment[3];
+    double part[3], moment[3];
+    brc_scale(part, per_area, area);
     brc_cross(moment, r, part);
     for (int k = 0; k < 3; k++) {
         sum[k] += part[k];
@@ -118,21 +121,24 @@ static void add_force(double sum[6], const double part[3], const double r[3])
 static void step_point(struct wall *w, size_t j, int flags, const double r[3], double un)
 {
     struct vgcm_points *p = w->p;
+    struct vgcm_energy e = {0};
     double area = p->law[j][VGCM_AREA], du[3];
-    bool is_grip = w->platen->grip != BRC_GRIP_NONE;
     relative_motion(w, r, du);
-    struct vgcm_point q = vgcm_point_at(p, j, un - du[0], w->bond.ks * area);
-    if (is_grip)
-        step_grip(w, area, du, &q);
+    struct vgcm_point q = vgcm_point_at(p, j, un - du[0], w->bond.ks);
+    if (w->platen->grip != BRC_GRIP_NONE)
+        step_grip(w, du, &q, &e);
     else
-        vgcm_law_rub(&w->bond, area, du, &q, &w->energy);
+        vgcm_law_rub(&w->bond, 1, du, &q, &e);
+    w->energy.normal += area * e.normal;
+    w->energy.shear += area * e.shear;
+    w->energy.friction += area * e.friction;
     p->un[j] = un;
-    vgcm_point_put(p, j, w->bond.ks * area, &q);
+    vgcm_point_put(p, j, w->bond.per_ks, &q);
     double part[3] = {-q.fn, q.fs, q.ft}; /* eq:vgcm:19 */
-    add_force(w->force, part, r);
+    add_force(w->force, area, part, r);
     if (flags & VGCM_VISCOUS) {
-        point_drag(w, area, du, &q, part);
-        add_force(w->drag, part, r);
+        point_drag(w, du, &q, part);
+        add_force(w->drag, area, part, r);
     }
     w->gap = un < w->gap ? un : w->gap;
 }
@@ -157,7 +163,7 @@ static void begin_row(struct wall *w, size_t i)
     const struct brc_sim *sim = w->sim;
     w->platen = brc_sim_platen(sim, c->b[i]);
     w->law.mu = w->platen->friction;
-    w->bond = (struct vgcm_bond){.law = &w->law, .kn = w->f->kn[i], .ks = w->law.eta * w->f->kn[i]};
+    w->bond = vgcm_springs_of(&w->law, w->f->kn[i]);
     w->gap = HUGE_VAL;
     w->viscosity = sim->dt > 0 ? w->law.viscous * sim->bodies.true_mass[c->a[i]] /
                                      (w->f->moment[i][VGCM_A] * sim->dt)
