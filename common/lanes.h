@@ -185,7 +185,7 @@ BRC_LANES_INLINE void brc_lanes_gather4(brc_lanes r[BRC_LANES], const double *co
 }
 
 /* Four rows of 3 values, one after the other, to and from lanes. */
-BRC_LANES_INLINE void brc_lanes_at3(brc_lanes r[3], double (*x)[3])
+BRC_LANES_INLINE void brc_lanes_at3(brc_lanes r[3], const double (*x)[3])
 {
     const double *v = (const double *)x; /* across the rows */
     brc_lanes a = brc_lanes_at(v), b = brc_lanes_at(v + 4), c = brc_lanes_at(v + 8);

@@ -171,11 +171,13 @@ typedef void poly_kernel(struct poly_block *block);
 typedef int poly_list_kernel(struct brc_context *ctx, struct poly_list *l,
                              const struct poly_pair *p, enum poly_rule rule, double skin,
                              double *allowance);
+typedef void poly_world_kernel(const struct brc_sim *sim, const struct poly_state *st);
 struct poly_kernels {
-    poly_list_kernel *list; /* poly_list_features */
-    poly_kernel *motion;    /* motion and bonds of the rows */
-    poly_kernel *points;    /* the lists: touches, forces, springs */
-    poly_kernel *finish;    /* sums of the rows, their works */
+    poly_world_kernel *world; /* vertices and planes in space */
+    poly_list_kernel *list;   /* poly_list_features */
+    poly_kernel *motion;      /* motion and bonds of the rows */
+    poly_kernel *points;      /* the lists: touches, forces, springs */
+    poly_kernel *finish;      /* sums of the rows, their works */
 };
 /* kernels.h for each instruction set: the kernels for the options of a simulation. */
 struct poly_kernels poly_kernels_base(const struct brc_sim *sim);

@@ -9,20 +9,9 @@ static const double CONDENSE = 3;
 
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
-    const struct brc_bodies *b = &sim->bodies;
-    const struct poly_shapes *s = &st->shapes;
-    for (size_t i = 0; i < b->n; i++)
-        brc_quat_matrix(st->turn[i], b->q[i]);
-    for (size_t i = 0; i < b->n_grains; i++) {
-        const double(*m)[3] = (const double(*)[3])st->turn[i];
-        for (size_t v = s->vertex_first[i]; v < s->vertex_first[i + 1]; v++)
-            for (int k = 0; k < 3; k++)
-                st->world[v][k] = b->x[i][k] + brc_dot(m[k], s->vertex[v]);
-        for (size_t f = s->face_first[i]; f < s->face_first[i + 1]; f++) {
-            poly_to_space(st->plane[f], m, s->face[f].n);
-            st->plane[f][3] = brc_dot(st->plane[f], b->x[i]) + s->face[f].d;
-        }
-    }
+    for (size_t i = 0; i < sim->bodies.n; i++)
+        brc_quat_matrix(st->turn[i], sim->bodies.q[i]);
+    st->kernels.world(sim, st);
 }
 
 void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct poly_state *st,
@@ -133,16 +122,6 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_block *block, bool condensed)
     const struct poly_rows *rows = c->model_columns;
     for (int32_t i = 0; i < block->n_ahead; i++) {
         int32_t row = block->ahead[i];
-        __builtin_prefetch(c->p0 + row);
-        __builtin_prefetch(c->a + row);
-        __builtin_prefetch(c->b + row);
-        __builtin_prefetch(c->status + row);
-        __builtin_prefetch(c->gap + row);
-        __builtin_prefetch(rows->wake + row);
-        __builtin_prefetch(rows->room + row);
-        __builtin_prefetch(rows->awake + row);
-        __builtin_prefetch(rows->ready + row);
-        __builtin_prefetch(rows->calm + row);
         fetch(c->f[row], sizeof c->f[row]);
         fetch(c->ta[row], sizeof c->ta[row]);
         fetch(c->tb[row], sizeof c->tb[row]);
@@ -159,7 +138,7 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_block *block, bool condensed)
     }
 }
 
-BRC_LANES_INLINE void fetch_points(const struct poly_block *block)
+BRC_LANES_INLINE void fetch_points(const struct poly_block *block, bool condensed)
 {
     const struct brc_contacts *c = &block->sim->pairs;
     const struct poly_rows *rows = c->model_columns;
@@ -167,9 +146,8 @@ BRC_LANES_INLINE void fetch_points(const struct poly_block *block)
     for (int32_t i = 0; i < block->n_ahead; i++) {
         int32_t row = block->ahead[i];
         size_t p = (size_t)c->p0[row], n = (size_t)rows->awake[row];
-        if (rows->shift[row][POLY_SHIFT_PATH] < rows->shift[row][POLY_SHIFT_END])
+        if (condensed && rows->shift[row][POLY_SHIFT_PATH] < rows->shift[row][POLY_SHIFT_END])
             continue;
-        __builtin_prefetch(points->sleep + p + n);
         if (n == 0)
             continue;
         fetch(points->item[p], n * sizeof points->item[p]);
@@ -382,7 +360,7 @@ void poly_forces(struct brc_sim *sim, void *state)
         for (int32_t i = 0; i < block->n_rows; i++)
             if (!block->held[i])
                 poly_list_points(block, i);
-        fetch_points(block);
+        fetch_points(block, condensed);
         poly_work_off(block);
         st->kernels.finish(block);
         for (int32_t i = 0; i < block->n_rows; i++) {

@@ -463,6 +463,11 @@ KERNEL(condensed_rub_ledger, points_kernel(block, true, true, true, false, true)
 #undef POINTS
 #undef KERNEL
 
+__attribute__((flatten)) static void world(const struct brc_sim *sim, const struct poly_state *st)
+{
+    place_cores(sim, st);
+}
+
 __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_list *l,
                                          const struct poly_pair *p, enum poly_rule rule,
                                          double skin, double *allowance)
@@ -474,7 +479,8 @@ static struct poly_kernels choose_condensed(const struct poly_params *p, bool fr
 {
     static poly_kernel *const points[2][2] = {{condensed_plain, condensed_plain},
                                               {condensed_rub, condensed_rub_ledger}};
-    return (struct poly_kernels){.list = list,
+    return (struct poly_kernels){.world = world,
+                                 .list = list,
                                  .motion = BRC_OPTION(p->torsion) ? motion_torsion_condensed
                                                                   : motion_condensed,
                                  .points = points[friction][ledger],
@@ -496,7 +502,8 @@ static struct poly_kernels choose_kernels(const struct brc_sim *sim)
     bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
     if (poly_is_condensed(sim))
         return choose_condensed(p, friction, ledger);
-    return (struct poly_kernels){.list = list,
+    return (struct poly_kernels){.world = world,
+                                 .list = list,
                                  .motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
                                  .points = points[merged][friction][viscous][ledger],
                                  .finish = finishes[viscous][ledger]};

@@ -4,7 +4,7 @@
 #ifndef POLY_LISTING_H
 #define POLY_LISTING_H
 
-#include "polyhedra/touches.h"
+#include "polyhedra/world.h"
 
 #include <string.h>
 
@@ -103,14 +103,20 @@ static void near_vertices(int32_t near[POLY_NEAR], const struct poly_core *other
 {
     int32_t n = 0;
     memcpy(near, none_near, sizeof none_near);
-    for (int32_t u = 0; u < other->n_vertices; u++) {
-        double r[3];
-        brc_sub(r, q, other->vertex[u]);
-        if (brc_norm2(r) >= range * range)
-            continue;
-        if (n < POLY_NEAR)
-            near[n] = u;
-        n++;
+    for (int32_t u = 0; u < other->n_vertices; u += BRC_LANES) {
+        int32_t at = (int32_t)whole_four((size_t)u, (size_t)other->n_vertices);
+        brc_lanes r[3];
+        brc_lanes_at3(r, other->vertex + at);
+        for (int k = 0; k < 3; k++)
+            r[k] = q[k] - r[k];
+        brc_mask is_near = brc_lanes_less(brc_lanes_dot(r, r), brc_lanes_all(range * range));
+        for (int32_t k = u - at; brc_lanes_any(is_near) && k < BRC_LANES; k++) {
+            if (!is_near[k])
+                continue;
+            if (n < POLY_NEAR)
+                near[n] = at + k;
+            n++;
+        }
     }
     if (n > POLY_NEAR)
         near[0] = POLY_MANY_NEAR;

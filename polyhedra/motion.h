@@ -3,7 +3,7 @@
 #ifndef POLY_MOTION_H
 #define POLY_MOTION_H
 
-#include "polyhedra/touches.h"
+#include "polyhedra/world.h"
 
 #include <string.h>
 
@@ -161,12 +161,6 @@ BRC_LANES_INLINE void bonds_of_group(struct bonds *bonds, const struct poly_bloc
     bonds->kt = p->bt * stiff;
     bonds->ktheta = brc_lanes_where(bonds->intact, p->bm * area * arm);
     bonds->length = length;
-}
-
-/* Four vectors of body frames in space. */
-BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
-{
-    set(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
 }
 
 /* Rotation matrices of four bodies. */

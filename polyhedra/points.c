@@ -129,11 +129,26 @@ static void set_vertex(const struct poly_block *block, int32_t i, size_t p, bool
         item[POLY_ITEM_PLACE + k] = first + (on_edge ? end[k] : index);
 }
 
-/* A point that has its item, into its list. */
-static void list_item(struct poly_block *block, const struct poly_points *points, int32_t i,
-                      size_t p)
+/* n points that have their items, into their lists: each is put at the end of all lists, one of
+ * which grows. Nothing branches, and the ends stay in registers. */
+static void list_items(struct poly_block *block, const struct poly_points *points, int32_t i,
+                       size_t p, size_t n)
 {
-    add_task(block, points->item[p][POLY_ITEM_LIST] & POLY_LIST, i, p);
+    int32_t flat = block->n_tasks[POLY_FLAT], sharp = block->n_tasks[POLY_SHARP];
+    int32_t crossing = block->n_tasks[POLY_CROSSING];
+    for (size_t q = p; q < p + n; q++) {
+        struct poly_task task = {.row = i, .point = (int32_t)q};
+        int32_t list = points->item[q][POLY_ITEM_LIST] & POLY_LIST;
+        block->task[POLY_FLAT][flat] = task;
+        block->task[POLY_SHARP][sharp] = task;
+        block->task[POLY_CROSSING][crossing] = task;
+        flat += list == POLY_FLAT;
+        sharp += list == POLY_SHARP;
+        crossing += list == POLY_CROSSING;
+    }
+    block->n_tasks[POLY_FLAT] = flat;
+    block->n_tasks[POLY_SHARP] = sharp;
+    block->n_tasks[POLY_CROSSING] = crossing;
 }
 
 /* Gives a point its item and lists it. What is computed where depends on the pose alone, not on
@@ -150,16 +165,16 @@ static double list_point(struct poly_block *block, int32_t i, size_t p, double r
     if (points->kind[p] == POLY_EDGES) {
         if (!is_set)
             set_edges(block, i, p);
-        list_item(block, points, i, p);
+        list_items(block, points, i, p, 1);
         return 0;
     }
     if (room > points->hold[p]) {
         if (!is_set)
             set_vertex(block, i, p, rule == POLY_MERGED);
-        list_item(block, points, i, p);
+        list_items(block, points, i, p, 1);
     } else if (touch_literally(block, i, p)) {
         set_vertex(block, i, p, rule == POLY_MERGED);
-        list_item(block, points, i, p);
+        list_items(block, points, i, p, 1);
     } else {
         points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
     }
@@ -218,8 +233,7 @@ static double list_part(struct poly_block *block, int32_t i, size_t p, size_t n)
     double room = rows->room[block->row[i]], calm = 0;
     block->n_points += (int32_t)n;
     if (block->calm[i])
-        for (size_t q = p; q < p + n; q++)
-            list_item(block, points, i, q);
+        list_items(block, points, i, p, n);
     else
         for (size_t q = p; q < p + n; q++)
             calm = poly_most(calm, list_point(block, i, q, room));
@@ -237,7 +251,7 @@ void poly_list_points(struct poly_block *block, int32_t i)
     if (!block->calm[i])
         poly_wake_points(&block->sim->pairs, row, rule_of(block) == POLY_MERGED);
     n = (size_t)rows->awake[row];
-    double calm = n < (size_t)c->np[row] ? points->sleep[p + n] : 0;
+    double calm = !block->calm[i] && n < (size_t)c->np[row] ? points->sleep[p + n] : 0;
     rows->ready[row] = n <= POLY_TASKS;
     if ((size_t)block->n_points + n > POLY_TASKS)
         poly_work_off(block);

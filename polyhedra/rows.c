@@ -318,7 +318,7 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
 static int compare_features(const void *x, const void *y)
 {
     const struct poly_feature *f = x, *g = y;
-    double path[2] = {fmax(f->free, 0), fmax(g->free, 0)};
+    double path[2] = {poly_most(f->free, 0), poly_most(g->free, 0)};
     if (path[0] != path[1])
         return path[0] < path[1] ? -1 : 1;
     if (f->kind != g->kind)

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Vertices and planes of all cores in space, four at a time. */
+#ifndef POLY_WORLD_H
+#define POLY_WORLD_H
+
+#include "polyhedra/touches.h"
+
+/* Pose of a body, the same in all lanes: rotation matrix and centre. */
+struct pose {
+    brc_lanes r[9], x[3];
+};
+
+/* Four vectors of body frames in space. */
+BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
+{
+    set(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
+}
+
+/* Where the four of a range that begin at i are: the last ones are the last four once more. A core
+ * has four vertices and faces at least. */
+BRC_LANES_INLINE size_t whole_four(size_t i, size_t end)
+{
+    return i + BRC_LANES <= end ? i : end - BRC_LANES;
+}
+
+BRC_LANES_INLINE void place_vertices(const struct poly_state *st, const struct pose *pose,
+                                     size_t first, size_t end)
+{
+    for (size_t i = first; i < end; i += BRC_LANES) {
+        size_t at = whole_four(i, end);
+        brc_lanes v[3];
+        brc_lanes_at3(v, st->shapes.vertex + at);
+        body_to_space(v, pose->r, v);
+        add(v, pose->x, v);
+        brc_lanes_put3(st->world + at, v);
+    }
+}
+
+BRC_LANES_INLINE void place_planes(const struct poly_state *st, const struct pose *pose,
+                                   size_t first, size_t end)
+{
+    for (size_t i = first; i < end; i += BRC_LANES) {
+        size_t at = whole_four(i, end);
+        const double *from[BRC_LANES];
+        brc_lanes p[BRC_LANES];
+        for (size_t k = 0; k < BRC_LANES; k++)
+            from[k] = (const double *)(st->shapes.face + at + k); /* n, d */
+        brc_lanes_gather4(p, from);
+        body_to_space(p, pose->r, p);
+        p[3] = brc_lanes_dot(p, pose->x) + p[3];
+        brc_lanes_transpose(p);
+        for (size_t k = 0; k < BRC_LANES; k++)
+            brc_lanes_put(st->plane[at + k], p[k]);
+    }
+}
+
+BRC_LANES_INLINE void place_cores(const struct brc_sim *sim, const struct poly_state *st)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    const struct poly_shapes *s = &st->shapes;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        struct pose pose;
+        for (int k = 0; k < 9; k++)
+            pose.r[k] = brc_lanes_all(st->turn[i][k / 3][k % 3]);
+        for (int k = 0; k < 3; k++)
+            pose.x[k] = brc_lanes_all(b->x[i][k]);
+        place_vertices(st, &pose, s->vertex_first[i], s->vertex_first[i + 1]);
+        place_planes(st, &pose, s->face_first[i], s->face_first[i + 1]);
+    }
+}
+
+#endif
