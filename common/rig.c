@@ -18,19 +18,23 @@ const struct brc_param_list brc_test_param_list = BRC_PARAMS(test_params, struct
 static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
-/* Adaptive loading: the rate follows log(target / unbalanced) by this gain a step, and rises and
- * falls by these parts a step at most. */
-static const double RATE_GAIN = 0.05, RATE_RISE = 0.03, RATE_FALL = 0.05;
-/* Largest strain of a step, and the automatic smallest one, over the strain so far and the target;
- * how much faster that is when the load has fallen to this part of its peak. Before a sudden
- * failure nothing tells the rig to slow down: the largest one is what its load is off by. */
-static const double FASTEST = 0.5, SLOWEST = 1.0 / 16, PAST_PEAK = 3, PEAK_PASSED = 0.9;
-/* The start is settled when the unbalanced force is below its target and this, or after so many
- * steps. */
-static const double SETTLED = 0.01;
+/* Adaptive loading, in units of test.target: strain a step over the strain so far while the
+ * specimen is elastic, and the unbalanced ratio that tells the onset of damage. */
+static const double ELASTIC = 2, DAMAGING = 7.5;
+/* The rate rises and falls by these parts a step at most. */
+static const double RATE_RISE = 0.05, RATE_FALL = 0.3;
+/* Kinetic energy, over that of elastic loading at the same rate, that halves the rate, and the
+ * least part of the rate that is left while an avalanche runs. */
+static const double AVALANCHE = 1.2, SLOWEST = 0.1;
+/* The load is lost below this part of its peak, and found again above that one. */
+static const double LOAD_LOST = 0.8, LOAD_FOUND = 0.95;
+/* weight of a step in the mean kinetic energy of elastic loading */
+static const double ELASTIC_WEIGHT = 0.1;
+/* The rate stays for the first steps, and the start is over after so many at the latest. */
 enum { LEAST_START = 20, LONGEST_START = 500 };
-/* seconds (steps) to strain_max at the automatic first rate */
-static const double FIRST_STEPS = 1e5;
+/* Automatic strain of a step over strain_max: adaptive loading's first one, over the target too,
+ * and that of fixed loading. */
+static const double FIRST_PART = 0.003, FIXED_PART = 1e-5;
 enum { UNBALANCED_STEPS = 5 }; /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
@@ -79,8 +83,10 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
 {
     struct brc_rig *rig = &sim->rig;
     rig->params = *test;
+    bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE;
     if (test->rate == 0)
-        rig->params.rate = test->strain_max / FIRST_STEPS;
+        rig->params.rate =
+            test->strain_max * (is_adaptive ? FIRST_PART * test->target : FIXED_PART);
     rig->n_platens = brc_rig_platens(test);
     rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
     rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;
@@ -114,11 +120,6 @@ void brc_rig_free(struct brc_sim *sim)
     brc_table_free(&sim->rig.curve.table);
 }
 
-static double clip(double x, double limit)
-{
-    return fmin(fmax(x, -limit), limit);
-}
-
 /* Mean unbalanced force on a grain over mean contact force. */
 static double unbalanced_ratio(const struct brc_sim *sim)
 {
@@ -140,30 +141,54 @@ static double unbalanced_ratio(const struct brc_sim *sim)
 /* The start is over when the field of velocities is that of steady loading. */
 static bool is_settled(const struct brc_sim *sim)
 {
-    double calm = fmin(SETTLED, sim->rig.params.target);
-    bool is_calm = sim->step >= LEAST_START && sim->rig.unbalanced < calm;
+    bool is_calm =
+        sim->step >= LEAST_START && sim->rig.unbalanced < 0.5 * DAMAGING * sim->rig.params.target;
     return is_calm || sim->step >= LONGEST_START || sim->events.table.n > 0;
 }
 
-static double smallest_rate(const struct brc_sim *sim)
+/* Up to the onset of damage: what kinetic energy goes with a rate, and whether damage has begun. */
+static void watch_elastic(struct brc_sim *sim)
 {
-    const struct brc_rig *rig = &sim->rig;
-    bool is_past = rig->force < PEAK_PASSED * rig->force_peak;
-    if (rig->params.rate_min > 0)
-        return rig->params.rate_min;
-    return (is_past ? PAST_PEAK : 1) * SLOWEST * rig->params.target * rig->strain / sim->dt;
+    struct brc_rig *rig = &sim->rig;
+    double kinetic = fmax(sim->ledger.kinetic, DBL_MIN) / (rig->rate * rig->rate);
+    double weight = rig->kinetic_elastic > 0 ? ELASTIC_WEIGHT : 1;
+    rig->kinetic_elastic += weight * (kinetic - rig->kinetic_elastic);
+    bool is_shaken = rig->is_settled && rig->unbalanced > DAMAGING * rig->params.target;
+    if (is_shaken || sim->events.table.n > 0)
+        rig->strain_onset = rig->strain;
 }
 
-/* Adaptive loading: the rate drifts to where the unbalanced force is at its target. */
+/* Part of the rate that is left beside an avalanche, told by kinetic energy that loading at the
+ * present rate does not explain. */
+static double brake(const struct brc_sim *sim, double base)
+{
+    const struct brc_rig *rig = &sim->rig;
+    double rate = fmax(rig->rate, base);
+    double usual = AVALANCHE * rig->kinetic_elastic * rate * rate;
+    double excess = fmax(sim->ledger.kinetic, 0) / usual;
+    return fmax(SLOWEST, 1 / (1 + excess * excess * excess * excess));
+}
+
+/* Until damage begins the rate goes along with the strain, so that no scale of it has to be known;
+ * from then on it stays, as a peak may be many times as far away. */
+static double wanted_rate(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    double target = rig->params.target / sim->dt;
+    if (rig->strain_onset == 0)
+        return fmax(rig->rate, ELASTIC * target * rig->strain);
+    double base = target * (rig->is_lost ? rig->strain : rig->strain_onset);
+    return base * brake(sim, base);
+}
+
 static void choose_change(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
-    double room = log(rig->params.target / fmax(rig->unbalanced, DBL_MIN));
-    double rate = rig->rate * exp(UNBALANCED_STEPS * fmin(RATE_GAIN * room, RATE_RISE));
-    rate =
-        fmin(fmax(rate, smallest_rate(sim)), FASTEST * rig->params.target * rig->strain / sim->dt);
-    rate = fmin(fmax(rate, rig->params.rate_min), rig->params.rate_max);
-    rig->change = clip(log(rate / rig->rate) / UNBALANCED_STEPS, RATE_FALL);
+    if (rig->strain_onset == 0)
+        watch_elastic(sim);
+    rig->is_lost = rig->force < (rig->is_lost ? LOAD_FOUND : LOAD_LOST) * rig->force_peak;
+    double rate = fmin(fmax(wanted_rate(sim), rig->params.rate_min), rig->params.rate_max);
+    rig->change = fmin(fmax(log(rate / rig->rate), -RATE_FALL), RATE_RISE);
 }
 
 /* In slow loading all velocities are in proportion to the rate: when their mean goes along with a
@@ -189,13 +214,24 @@ static void change_velocities(struct brc_sim *sim, double part)
     }
 }
 
+/* Velocities are in proportion to the rate as far as their energy is that of elastic loading; those
+ * of an avalanche are not, and would be driven by a rate that rises again. */
+static double part_of_rate(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    if (rig->strain_onset == 0)
+        return 1;
+    double rate = sqrt(fmax(sim->ledger.kinetic, 0) / rig->kinetic_elastic);
+    return rig->rate / fmax(rig->rate, rate);
+}
+
 static void change_rate(struct brc_sim *sim)
 {
     double factor = exp(sim->rig.change);
     if (sim->rig.change == 0)
         return;
     if (sim->has_mean)
-        change_velocities(sim, factor - 1);
+        change_velocities(sim, (factor - 1) * part_of_rate(sim));
     sim->rig.rate *= factor;
 }
 
@@ -290,9 +326,9 @@ int brc_rig_step(struct brc_sim *sim)
     if (sim->step % UNBALANCED_STEPS == 0) {
         rig->unbalanced = unbalanced_ratio(sim);
         rig->is_settled = rig->is_settled || is_settled(sim);
-        if (rig->is_settled && rig->params.loading == BRC_LOADING_ADAPTIVE)
-            choose_change(sim);
     }
+    if (sim->step >= LEAST_START && rig->params.loading == BRC_LOADING_ADAPTIVE)
+        choose_change(sim);
     change_rate(sim);
     set_platen_velocities(sim);
     return 0;

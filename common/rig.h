@@ -14,13 +14,14 @@ enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
     CHOICE(kind, "compression|tension|brazilian|none", "compression",                            \
            "compression and tension along z, Brazilian along y; none: no platens")               \
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                \
-           "adaptive: fast while the specimen is calm, slow while it breaks; fixed: at rate")    \
+           "adaptive: fast while the specimen is elastic, slow while it breaks; fixed: at rate") \
     REAL(rate, "1/s", "0 1/s", "[0, inf)",                                                       \
-         "fixed loading: strain rate; adaptive: the first one; 0: strain_max / 1e5 a second; "   \
+         "fixed loading: strain rate; adaptive: the first one; 0: strain_max / 1e5 a second, "   \
+         "strain_max x target x 0.003; "                                                         \
          "in the quasi-static regime one step is one second")                                    \
-    REAL(target, "1", "0.006", "(0, 1)", "adaptive: unbalanced-force ratio to hold")             \
-    REAL(rate_min, "1/s", "0 1/s", "[0, inf)",                                                   \
-         "adaptive: smallest strain rate; 0: strain so far x target / 16 a step")                \
+    REAL(target, "1", "0.003", "(0, 1)",                                                         \
+         "adaptive: strain a step, over the strain at which damage began")                       \
+    REAL(rate_min, "1/s", "0 1/s", "[0, inf)", "adaptive: smallest strain rate")                 \
     REAL(rate_max, "1/s", "1e-3 1/s", "(0, inf)", "adaptive: largest strain rate")               \
     REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain")              \
     REAL(stop_drop, "1", "0.5", "[0, 1)",                                                        \

@@ -26,7 +26,7 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
     REAL(mass_margin, "1", "1.2", "(0, 100]",                                                     \
          "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "    \
          "measured, and an unstable step is an error")                                            \
-    REAL(local_damping, "1", "0.7", "[0, 1)", "quasi_static: local non-viscous damping alpha")    \
+    REAL(local_damping, "1", "0.3", "[0, 1)", "quasi_static: local non-viscous damping alpha")    \
     CHOICE(damping, "cartesian|along_velocity", "cartesian",                                      \
            "local damping per Cartesian component as printed, or along the velocity")             \
     CHOICE(damped, "auto|motion|fluctuation", "auto",                                             \
@@ -53,6 +53,9 @@ extern const struct brc_param_list brc_run_param_list;
 #define BRC_RIG_SCALARS(X)                                                    \
     X(double, rate, "s-1", "strain rate")                                     \
     X(double, change, "1", "adaptive: change of log rate a step")             \
+    X(double, strain_onset, "1", "adaptive: where damage began; 0: not yet")  \
+    X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")   \
+    X(int64_t, is_lost, "1", "adaptive: the load has fallen from its peak")   \
     X(int64_t, is_settled, "1", "the start has been left behind")             \
     X(double, strain, "1", "platen strain, in the sense of the test")         \
     X(double, force, "N", "mean platen force now, in the sense of the test")  \

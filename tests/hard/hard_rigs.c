@@ -35,7 +35,7 @@ static void change_of(const double *value, const double *base, double change[2])
 static void loading_rate(void **state)
 {
     struct fixture *f = *state;
-    const char *const changed[3] = {"test.target=0.006", "test.target=0.003",
+    const char *const changed[3] = {"test.target=0.003", "test.target=0.0015",
                                     "run.mass_margin=4.8"};
     for (int m = 0; m < brc_registry_count(); m++) {
         const struct brc_model *model = brc_registry_at(m);
