@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* Skin of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
-#define POLY_LIST_SKIN 0.15
+#define POLY_LIST_SKIN 0.2
 
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
