@@ -271,6 +271,8 @@ static void choose_damped(struct brc_sim *sim, const struct brc_test_params *tes
     sim->spares_mean = is_auto ? is_adaptive : sim->run.damped == BRC_DAMPED_FLUCTUATION;
     sim->has_mean = sim->run.regime == BRC_QUASI_STATIC && (is_adaptive || sim->spares_mean);
     sim->spares_mean &= sim->has_mean;
+    double alpha = sim->spares_mean ? sim->run.fluctuation_damping : sim->run.local_damping;
+    sim->damping_alpha = sim->run.regime == BRC_QUASI_STATIC ? alpha : 0;
 }
 
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
@@ -281,7 +283,6 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     sim->ctx = ctx;
     sim->specimen = specimen;
     sim->run = *run;
-    sim->damping_alpha = run->regime == BRC_QUASI_STATIC ? run->local_damping : 0;
     choose_damped(sim, test);
     brc_events_init(&sim->events);
     BRC_TRY(brc_simd_check(ctx, run->simd));

@@ -26,7 +26,10 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
     REAL(mass_margin, "1", "1.2", "(0, 100]",                                                     \
          "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "    \
          "measured, and an unstable step is an error")                                            \
-    REAL(local_damping, "1", "0.3", "[0, 1)", "quasi_static: local non-viscous damping alpha")    \
+    REAL(local_damping, "1", "0.7", "[0, 1)",                                                     \
+         "quasi_static: local non-viscous damping alpha against the whole motion")                \
+    REAL(fluctuation_damping, "1", "0.3", "[0, 1)",                                               \
+         "quasi_static: alpha against the fluctuation about the mean motion, in its place")       \
     CHOICE(damping, "cartesian|along_velocity", "cartesian",                                      \
            "local damping per Cartesian component as printed, or along the velocity")             \
     CHOICE(damped, "auto|motion|fluctuation", "auto",                                             \

@@ -183,9 +183,9 @@ static double strength(struct brc_context *ctx, const struct brc_specimen *speci
  * larger loading target. BENCH_REFERENCE=1 runs slow loading too (minutes). */
 static void time_compression(struct brc_context *ctx, const struct brc_specimen *specimen)
 {
-    const char *const run[] = {"local_damping", "0.2", "mass_margin", "0.5", NULL};
+    const char *const run[] = {"fluctuation_damping", "0.2", "mass_margin", "0.5", NULL};
     const char *const test[] = {"target", "0.005", NULL};
-    const char *const slow_run[] = {"local_damping", "0.7", NULL};
+    const char *const slow_run[] = {NULL};
     const char *const slow[] = {"loading", "fixed", "rate", "2e-7 1/s", "stop_drop", "0.8", NULL};
     double seconds, steps, reference = REFERENCE;
     if (getenv("BENCH_REFERENCE")) {

@@ -61,8 +61,8 @@ static void loading_rate(void **state)
 static void damping(void **state)
 {
     struct fixture *f = *state;
-    const char *const alpha[4] = {"run.local_damping=0.2", "run.local_damping=0.4",
-                                  "run.local_damping=0.6", "run.local_damping=0.8"};
+    const char *const alpha[4] = {"run.fluctuation_damping=0.2", "run.fluctuation_damping=0.4",
+                                  "run.fluctuation_damping=0.6", "run.fluctuation_damping=0.8"};
     for (int m = 0; m < brc_registry_count(); m++) {
         const struct brc_model *model = brc_registry_at(m);
         double value[4], low = HUGE_VAL, high = 0;

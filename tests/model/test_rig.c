@@ -154,8 +154,8 @@ static void kick_of(struct fixture *f, const char *run, double part[2])
 static void damping_spares_the_mean_motion(void **state)
 {
     double printed[2], spared[2];
-    kick_of(*state, "local_damping: 0.7; damped: motion", printed);
-    kick_of(*state, "local_damping: 0.7; damped: fluctuation", spared);
+    kick_of(*state, "local_damping: 0.7; fluctuation_damping: 0; damped: motion", printed);
+    kick_of(*state, "local_damping: 0; fluctuation_damping: 0.7; damped: fluctuation", spared);
     CHECK_NEAR(printed[0], 0.3, 0, 1e-9);
     CHECK_NEAR(printed[1], 1.7, 0, 1e-9);
     CHECK_NEAR(spared[0], 1, 0, 1e-9);

@@ -303,7 +303,7 @@ static void ledger_holds_through_failure(void **state)
                  "kind: %s; loading: fixed; rate: 2e-6 1/s; strain_max: 0.005; stop_drop: 0; "
                  "friction: 0.2",
                  kind[k / 2]);
-        fixture_sim(f, &brc_model_vgcm, law[k % 2], text, "local_damping: 0.7");
+        fixture_sim(f, &brc_model_vgcm, law[k % 2], text, "");
         fixture_steps(f, 2000);
         const struct brc_ledger *l = &f->sim.ledger;
         assert_true(f->sim.events.table.n > 50);
