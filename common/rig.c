@@ -21,6 +21,8 @@ static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_
 /* Adaptive loading, in units of test.target: strain a step over the strain so far while the
  * specimen is elastic, and the unbalanced ratio that tells the onset of damage. */
 static const double ELASTIC = 2, DAMAGING = 7.5;
+/* Unbalanced ratio below which nothing is damaged, and how far beyond its onset. */
+static const double STILL = 0.4, BEYOND = 2;
 /* The rate rises and falls by these parts a step at most. */
 static const double RATE_RISE = 0.05, RATE_FALL = 0.3;
 /* Kinetic energy, over that of elastic loading at the same rate, that halves the rate, and the
@@ -30,8 +32,10 @@ static const double AVALANCHE = 1.2, SLOWEST = 0.1;
 static const double LOAD_LOST = 0.8, LOAD_FOUND = 0.95;
 /* weight of a step in the mean kinetic energy of elastic loading */
 static const double ELASTIC_WEIGHT = 0.1;
-/* The rate stays for the first steps, and the start is over after so many at the latest. */
-enum { LEAST_START = 20, LONGEST_START = 500 };
+/* The rate stays for the first steps. The start is over after so many, over the target, at the
+ * latest. */
+static const double LONGEST_START = 3;
+enum { LEAST_START = 20 };
 /* Automatic strain of a step over strain_max: adaptive loading's first one, over the target too,
  * and that of fixed loading. */
 static const double FIRST_PART = 0.003, FIXED_PART = 1e-5;
@@ -143,7 +147,8 @@ static bool is_settled(const struct brc_sim *sim)
 {
     bool is_calm =
         sim->step >= LEAST_START && sim->rig.unbalanced < 0.5 * DAMAGING * sim->rig.params.target;
-    return is_calm || sim->step >= LONGEST_START || sim->events.table.n > 0;
+    bool is_late = (double)sim->step >= LONGEST_START / sim->rig.params.target;
+    return is_calm || is_late || sim->events.table.n > 0;
 }
 
 /* Up to the onset of damage: what kinetic energy goes with a rate, and whether damage has begun. */
@@ -156,6 +161,14 @@ static void watch_elastic(struct brc_sim *sim)
     bool is_shaken = rig->is_settled && rig->unbalanced > DAMAGING * rig->params.target;
     if (is_shaken || sim->events.table.n > 0)
         rig->strain_onset = rig->strain;
+}
+
+/* What was taken for the onset of damage was none: nothing has broken, and all is still. */
+static bool was_false_alarm(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    return sim->events.table.n == 0 && rig->strain > BEYOND * rig->strain_onset &&
+           rig->unbalanced < STILL * rig->params.target;
 }
 
 /* Part of the rate that is left beside an avalanche, told by kinetic energy that loading at the
@@ -184,6 +197,8 @@ static double wanted_rate(const struct brc_sim *sim)
 static void choose_change(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
+    if (was_false_alarm(sim))
+        rig->strain_onset = 0;
     if (rig->strain_onset == 0)
         watch_elastic(sim);
     rig->is_lost = rig->force < (rig->is_lost ? LOAD_FOUND : LOAD_LOST) * rig->force_peak;

@@ -21,14 +21,14 @@ struct queue {
 };
 
 struct loop {
+    struct booked booked;
     struct brc_sim *sim;
     const struct vgcm_law *law;
     struct brc_contacts *c;
     struct vgcm_contacts *f;
     struct vgcm_points *p;
-    struct booked booked;
-    struct queue queue[VGCM_N_PHASES];
     size_t ahead; /* the next rows to be asked for */
+    struct queue queue[VGCM_N_PHASES];
 };
 
 struct four {

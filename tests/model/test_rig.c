@@ -73,6 +73,31 @@ static void the_rate_follows_the_onset_of_damage(void **state)
     assert_true(let_go > 2);
 }
 
+/* An onset that was none is forgotten, and a finer target takes steps in proportion. */
+static void a_false_alarm_costs_little(void **state)
+{
+    struct fixture *f = *state;
+    const struct brc_rig *rig = &f->sim.rig;
+    int64_t steps[3];
+    const char *const targets[] = {"target: 0.002", "target: 0.0005", "target: 0.0005"};
+    for (int k = 0; k < 3; k++) {
+        pull(f, targets[k], 0);
+        while (!brc_rig_done(&f->sim)) {
+            fixture_steps(f, 1);
+            if (k == 2 && f->sim.step == 1500) {
+                assert_true(rig->strain_onset == 0 && rig->is_settled);
+                f->sim.rig.strain_onset = rig->strain / 10;
+            }
+            assert_true(f->sim.step < 60000);
+        }
+        steps[k] = f->sim.step;
+    }
+    print_message("%lld steps, a quarter of the target %lld, with a false alarm %lld\n",
+                  (long long)steps[0], (long long)steps[1], (long long)steps[2]);
+    CHECK_BETWEEN((double)steps[1] / (double)steps[0], 2, 6);
+    CHECK_BETWEEN((double)steps[2] / (double)steps[1], 0.7, 1.3);
+}
+
 /* What a rate that rises adds to the velocities of an avalanche: not more than it adds in elastic
  * loading. */
 static void a_rising_rate_drives_no_avalanche(void **state)
@@ -211,6 +236,7 @@ int main(void)
         FIXTURE_TEST(a_fixed_rate_stays),
         FIXTURE_TEST(adaptive_rates_keep_to_their_bounds),
         FIXTURE_TEST(the_rate_follows_the_onset_of_damage),
+        FIXTURE_TEST(a_false_alarm_costs_little),
         FIXTURE_TEST(a_rising_rate_drives_no_avalanche),
         FIXTURE_TEST(a_change_of_rate_makes_no_wave),
         FIXTURE_TEST(damping_spares_the_mean_motion),
