@@ -10,7 +10,7 @@
 
 extern const struct brc_model brc_model_vgcm;
 
-enum { STEPS = 10, ELASTIC_REPEATS = 100 };
+enum { STEPS = 10, ELASTIC_REPEATS = 50 };
 /* Bytes that an elastic step moves a contact (rows of bodies stay in the cache): a, b, phase, kn,
  * plane, rim, moment read; n, s, u read and written; f, gap written. */
 static const double BYTES = 8 + 1 + 24 + 48 + 2 * 96 + 32;
