@@ -147,17 +147,6 @@ BRC_LANES_INLINE void brc_lanes_cross(brc_lanes r[3], const brc_lanes a[3], cons
     r[1] = y;
 }
 
-/* Lane i of the result is the sum over the lanes of a[i]. */
-BRC_LANES_INLINE brc_lanes brc_lanes_sums(const brc_lanes a[BRC_LANES])
-{
-    brc_lanes lo = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) +
-                   __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
-    brc_lanes hi = __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) +
-                   __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
-    return __builtin_shufflevector(lo, hi, 0, 1, 4, 5) +
-           __builtin_shufflevector(lo, hi, 2, 3, 6, 7);
-}
-
 /* Lane i of r[j] becomes lane j of r[i]. */
 BRC_LANES_INLINE void brc_lanes_transpose(brc_lanes r[BRC_LANES])
 {
@@ -206,31 +195,6 @@ BRC_LANES_INLINE void brc_lanes_put3(double (*x)[3], const brc_lanes r[3])
     brc_lanes_put(v, __builtin_shufflevector(ab, ca, 0, 1, 4, 5));
     brc_lanes_put(v + 4, __builtin_shufflevector(bc, ab, 0, 1, 6, 7));
     brc_lanes_put(v + 8, __builtin_shufflevector(ca, bc, 2, 3, 6, 7));
-}
-
-/* Four rows of 6 values, one after the other, to and from lanes. */
-BRC_LANES_INLINE void brc_lanes_at6(brc_lanes r[6], double (*x)[6])
-{
-    for (int k = 0; k < 6; k += 2) {
-        brc_lanes lo = __builtin_shufflevector(*(const brc_pair_loose *)&x[0][k],
-                                               *(const brc_pair_loose *)&x[2][k], 0, 1, 2, 3);
-        brc_lanes hi = __builtin_shufflevector(*(const brc_pair_loose *)&x[1][k],
-                                               *(const brc_pair_loose *)&x[3][k], 0, 1, 2, 3);
-        r[k] = __builtin_shufflevector(lo, hi, 0, 4, 2, 6);
-        r[k + 1] = __builtin_shufflevector(lo, hi, 1, 5, 3, 7);
-    }
-}
-
-BRC_LANES_INLINE void brc_lanes_put6(double (*x)[6], const brc_lanes r[6])
-{
-    for (int k = 0; k < 6; k += 2) {
-        brc_lanes lo = __builtin_shufflevector(r[k], r[k + 1], 0, 4, 2, 6);
-        brc_lanes hi = __builtin_shufflevector(r[k], r[k + 1], 1, 5, 3, 7);
-        *(brc_pair_loose *)&x[0][k] = __builtin_shufflevector(lo, lo, 0, 1);
-        *(brc_pair_loose *)&x[1][k] = __builtin_shufflevector(hi, hi, 0, 1);
-        *(brc_pair_loose *)&x[2][k] = __builtin_shufflevector(lo, lo, 2, 3);
-        *(brc_pair_loose *)&x[3][k] = __builtin_shufflevector(hi, hi, 2, 3);
-    }
 }
 
 /* Rows of 6 values at four places, to lanes. */
