@@ -10,7 +10,7 @@
 /* Ladders of every case. */
 static const char *const ladders[] = {"step", "loading", "rate", "grains"};
 /* Choices of a model that are axes unless --axes says otherwise. */
-static const char *const choices[] = {"points", "features", "storage", "intact"};
+static const char *const choices[] = {"points", "features", "storage", "evaluation"};
 enum {
     N_LADDERS = sizeof ladders / sizeof ladders[0],
     N_CHOICES = sizeof choices / sizeof choices[0]
@@ -372,6 +372,8 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
             double step = i == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
             put_step(&s, &order->job->run, step);
             put_loading(&s, &m->test, factor);
+            if (find_choice(m->model, "evaluation"))
+                add_line(&s, "%s.evaluation=literal", m->model->name);
             s.weight = 1 / (factor * step);
             snprintf(s.label, sizeof s.label, "loading x 1/%g step x %g", 1 / factor, step);
         }

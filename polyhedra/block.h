@@ -18,9 +18,11 @@ enum {
 };
 
 /* Four touches, as in struct poly_touch; where nothing touches all is zero but for delta, and
- * -delta is a relative path of the bodies that cannot bring them in touch. */
+ * -delta is a relative path of the bodies that cannot bring them in touch. Where they fade, they
+ * can but touch with a weight that grows from 0: edges, by their ends. */
 struct poly_touches {
     brc_lanes n[3], x[3], delta, weight, g[3], c[3];
+    brc_mask fades;
 };
 
 /* Force on b and its moment about the centre of a, for four rows. */
@@ -35,7 +37,7 @@ struct poly_row_group {
     brc_lanes broken;                    /* > 1: the bond breaks */
     brc_lanes k[3], gap;
     struct poly_wrenches bond;
-    brc_lanes bond_stored;                          /* J, where rows may be condensed */
+    brc_lanes opening, bond_stored;                 /* m, J, of the bond, if any */
     brc_lanes stored, slid;                         /* J, of the tangential springs */
     brc_lanes work_normal, work_bond, work_viscous; /* J */
 };
@@ -117,6 +119,7 @@ struct poly_task {
 struct poly_apart {
     int32_t row, point;
     double path;
+    bool fades;
 };
 
 /* What the points of a row want of it, in fours for gathers. */
@@ -150,16 +153,17 @@ struct poly_block {
     int32_t n_ahead, ahead[POLY_ROWS];                  /* rows of the next block */
     int32_t row[POLY_ROWS], a[POLY_ROWS], b[POLY_ROWS]; /* filled up to whole groups */
     bool listed[POLY_ROWS], calm[POLY_ROWS];
-    bool held[POLY_ROWS];     /* its points are not looked at */
-    bool open[POLY_ROWS + 1]; /* some of its points are apart */
-    struct poly_pair pair;    /* of the row pair_row */
+    bool open[POLY_ROWS + 1];   /* some of its points are apart */
+    bool steady[POLY_ROWS + 1]; /* its tangent is found */
+    struct poly_pair pair;      /* of the row pair_row */
     int32_t pair_row;
     int32_t n_tasks[POLY_N_LISTS];
     double nearest[POLY_ROWS + 1]; /* the smallest gap of a row's points */
     double loosest[POLY_ROWS + 1]; /* the smallest overlap, while it is condensed */
     _Alignas(64) double frame[POLY_ROWS + 1][POLY_FRAME];
     double sum[POLY_ROWS + 1][POLY_SUMS];
-    double tangent[POLY_ROWS + 1][36];
+    double tangent[POLY_ROWS + 1][36]; /* column after column */
+    brc_lanes carried_work;            /* J */
     struct poly_row_group group[POLY_ROWS / BRC_LANES];
     struct poly_touches known[POLY_TASKS / BRC_LANES];
     struct poly_task task[POLY_N_LISTS][POLY_TASKS + BRC_LANES];
@@ -178,6 +182,7 @@ struct poly_kernels {
     poly_kernel *motion;      /* motion and bonds of the rows */
     poly_kernel *points;      /* the lists: touches, forces, springs */
     poly_kernel *finish;      /* sums of the rows, their works */
+    poly_kernel *carry;       /* condensed rows, or NULL */
 };
 /* kernels.h for each instruction set: the kernels for the options of a simulation. */
 struct poly_kernels poly_kernels_base(const struct brc_sim *sim);

@@ -98,9 +98,11 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
 static size_t look_ahead(struct poly_block *block, size_t row)
 {
     const struct brc_contacts *c = &block->sim->pairs;
+    const struct poly_rows *rows = c->model_columns;
     int32_t n = 0;
     for (; row < c->n && n < POLY_ROWS; row++)
-        if (c->np[row] > 0 || !poly_is_idle(c, row) || poly_is_awake(block->sim, c, row))
+        if (!rows->carried[row] &&
+            (c->np[row] > 0 || !poly_is_idle(c, row) || poly_is_awake(block->sim, c, row)))
             block->ahead[n++] = (int32_t)row;
     block->n_ahead = n;
     return row;
@@ -126,19 +128,17 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_block *block, bool condensed)
         fetch(c->ta[row], sizeof c->ta[row]);
         fetch(c->tb[row], sizeof c->tb[row]);
         fetch(c->k[row], sizeof c->k[row]);
-        fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
+        fetch(rows->bond[row], sizeof rows->bond[row]);
         if (condensed) {
             fetch(rows->shift[row], sizeof rows->shift[row]);
-            fetch(rows->held[row], sizeof rows->held[row]);
-            fetch(rows->tangent[row], sizeof rows->tangent[row]);
         } else {
-            fetch(rows->bond[row], sizeof rows->bond[row]);
+            fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
             fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
         }
     }
 }
 
-BRC_LANES_INLINE void fetch_points(const struct poly_block *block, bool condensed)
+BRC_LANES_INLINE void fetch_points(const struct poly_block *block)
 {
     const struct brc_contacts *c = &block->sim->pairs;
     const struct poly_rows *rows = c->model_columns;
@@ -146,8 +146,6 @@ BRC_LANES_INLINE void fetch_points(const struct poly_block *block, bool condense
     for (int32_t i = 0; i < block->n_ahead; i++) {
         int32_t row = block->ahead[i];
         size_t p = (size_t)c->p0[row], n = (size_t)rows->awake[row];
-        if (condensed && rows->shift[row][POLY_SHIFT_PATH] < rows->shift[row][POLY_SHIFT_END])
-            continue;
         if (n == 0)
             continue;
         fetch(points->item[p], n * sizeof points->item[p]);
@@ -206,6 +204,7 @@ static int prepare_row(struct poly_block *block, int32_t i)
     int lane = i % BRC_LANES;
     if (block->listed[i] ? rows->room[row] <= 0 : poly_is_awake(sim, c, row))
         BRC_TRY(poly_list_row(sim, block->st, row));
+    block->listed[i] = c->np[row] > 0;
     g->gap[lane] =
         rows->wake[row] - sim->bodies.travel[block->a[i]] - sim->bodies.travel[block->b[i]];
     if (g->broken[lane] > 1 && poly_params_of(sim)->breakable)
@@ -244,55 +243,94 @@ static void hold_bond(const struct poly_block *block, int32_t i, double held[6],
             f[k] = kn * along * r.n[k] + bond.kt * (d[k] - along * r.n[k]);
         brc_cross(moment, arm, f);
         for (int k = 0; k < 3; k++) {
-            tangent[k][j] += f[k];
-            tangent[3 + k][j] += moment[k];
+            tangent[j][k] += f[k];
+            tangent[j][3 + k] += moment[k];
             if (j >= 3)
-                tangent[3 + k][j] += bond.ktheta * r.n[j - 3] * r.n[k];
+                tangent[j][3 + k] += bond.ktheta * r.n[j - 3] * r.n[k];
         }
     }
 }
 
-/* Relative path of a row before its bond can break: strains change by twice the path over the
- * strain length at most, the twist by the path over the reach of b. */
-static double path_to_break(const struct poly_block *block, int32_t i)
+/* Relative path for which no point that sleeps can touch, `most` at most. */
+static double path_of_sleepers(const struct brc_contacts *c, size_t row, double most)
+{
+    const struct poly_rows *rows = c->model_columns;
+    const struct poly_points *points = c->point_columns;
+    size_t p = (size_t)c->p0[row] + (size_t)rows->awake[row];
+    size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
+    double room = rows->room[row];
+    most = poly_least(most, room);
+    for (; p < end && room - points->sleep[p] < most; p++)
+        if (points->kind[p] != POLY_EDGES || points->hold[p] != POLY_FADES)
+            return room - points->sleep[p];
+    return most;
+}
+
+/* Relative path for which a row may be condensed, if its springs do. */
+static double path_left(const struct poly_block *block, int32_t i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    double most = p->condensed_path * p->radius;
+    if (block->listed[i])
+        return path_of_sleepers(&block->sim->pairs, (size_t)block->row[i], most);
+    return poly_least(block->group[i / BRC_LANES].gap[i % BRC_LANES], most);
+}
+
+/* Decides whether a row may be condensed: then its tangent is found with its forces. */
+static void begin_tangent(struct poly_block *block, int32_t i)
+{
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    bool is_whole = !block->listed[i] || rows->ready[block->row[i]];
+    block->steady[i] = is_whole && path_left(block, i) >=
+                                       CONDENSE * block->group[i / BRC_LANES].path[i % BRC_LANES];
+    if (block->steady[i])
+        memset(block->tangent[i], 0, sizeof block->tangent[i]);
+}
+
+/* Relative path of a row before its bond can break, or begin or end to pull: openings change by
+ * twice the path at most, strains by that over the strain length, the twist by the path over the
+ * reach of b. */
+static double path_of_bond(const struct poly_block *block, int32_t i)
 {
     const struct poly_params *p = poly_params_of(block->sim);
     const struct poly_rows *rows = block->sim->pairs.model_columns;
+    const struct poly_row_group *g = &block->group[i / BRC_LANES];
     double length = *poly_bond_length(rows, (size_t)block->row[i]);
-    double slope = 2 / (length * p->eps_th);
+    double slope = 2 / (length * p->eps_th), path = 0.5 * fabs(g->opening[i % BRC_LANES]);
     if (p->torsion && p->theta_limit)
         slope += 1 / (block->sim->bodies.reach[block->b[i]] * p->theta_th);
-    return p->breakable ? (1 - block->group[i / BRC_LANES].broken[i % BRC_LANES]) / slope
-                        : HUGE_VAL;
+    return p->breakable ? poly_least(path, (1 - g->broken[i % BRC_LANES]) / slope) : path;
 }
 
-/* A bonded row that has been computed literally, and whose springs all touch, is condensed until it
- * has moved by the path for which they stay what they are. */
+/* A row that has been computed literally, and whose springs all touch, is condensed until it has
+ * moved by the path for which they stay what they are. */
 static void condense_row(struct poly_block *block, int32_t i)
 {
     struct brc_sim *sim = block->sim;
     const struct poly_rows *rows = sim->pairs.model_columns;
-    const struct poly_params *p = poly_params_of(sim);
     const struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     bool is_intact = sim->pairs.status[row] == BRC_INTACT;
-    double *shift = rows->shift[row], stored = is_intact ? g->bond_stored[i % BRC_LANES] : 0;
+    int lane = i % BRC_LANES;
+    double *shift = rows->shift[row], stored = is_intact ? g->bond_stored[lane] : 0;
     if (is_intact)
         account_bond(sim, row, stored);
     memset(shift, 0, sizeof rows->shift[row]);
     shift[POLY_SHIFT_STORED] = stored;
-    if (!is_intact || !block->listed[i] || block->open[i])
+    if (!block->steady[i] || block->open[i])
         return;
-    double end = poly_least(p->intact_path * p->radius, block->loosest[i]);
-    end = poly_least(end, rows->room[row] - rows->calm[row]);
-    end = poly_least(end, path_to_break(block, i));
-    if (end < CONDENSE * g->path[i % BRC_LANES])
+    double end = poly_least(block->loosest[i], path_left(block, i));
+    if (is_intact)
+        end = poly_least(end, path_of_bond(block, i));
+    if (end < CONDENSE * g->path[lane])
         return;
     shift[POLY_SHIFT_END] = end;
+    rows->carried[row] = 1;
     for (int k = 0; k < 6; k++)
         rows->held[row][k] = block->sum[i][POLY_SUM_NORMAL + k] + block->sum[i][POLY_SUM_SHEAR + k];
     memcpy(rows->tangent[row], block->tangent[i], sizeof rows->tangent[row]);
-    hold_bond(block, i, rows->held[row], (double(*)[6])rows->tangent[row]);
+    if (is_intact)
+        hold_bond(block, i, rows->held[row], (double(*)[6])rows->tangent[row]);
 }
 
 /* Stiffness of row i of the block; works into the ledger. */
@@ -303,10 +341,8 @@ static void store_row(struct poly_block *block, int32_t i)
     const struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     int lane = i % BRC_LANES;
-    if (!block->held[i]) {
-        c->gap[row] = g->gap[lane];
-        poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
-    }
+    c->gap[row] = g->gap[lane];
+    poly_store_k(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
     if (!BRC_OPTION(sim->run.ledger))
         return;
     sim->ledger.contact_normal += g->work_normal[lane];
@@ -333,8 +369,7 @@ static void open_block(struct poly_block *block, struct brc_sim *sim, struct pol
     block->skin = POLY_LIST_SKIN * radius;
     block->pair_row = -1;
     block->n_points = 0;
-    block->viscous = sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
-    memset(block->held, 0, sizeof block->held);
+    block->viscous = poly_is_viscous(sim);
     memset(block->n_tasks, 0, sizeof block->n_tasks);
 }
 
@@ -345,6 +380,8 @@ void poly_forces(struct brc_sim *sim, void *state)
     bool condensed = poly_is_condensed(sim);
     poly_world(sim, st);
     open_block(block, sim, st);
+    if (condensed)
+        st->kernels.carry(block);
     size_t row = look_ahead(block, 0);
     while (block->n_ahead > 0) {
         take_rows(block);
@@ -357,15 +394,17 @@ void poly_forces(struct brc_sim *sim, void *state)
             if (!block->calm[i] && prepare_row(block, i) != 0)
                 return;
         }
-        for (int32_t i = 0; i < block->n_rows; i++)
-            if (!block->held[i])
-                poly_list_points(block, i);
-        fetch_points(block, condensed);
+        for (int32_t i = 0; i < block->n_rows; i++) {
+            poly_list_points(block, i);
+            if (condensed)
+                begin_tangent(block, i);
+        }
+        fetch_points(block);
         poly_work_off(block);
         st->kernels.finish(block);
         for (int32_t i = 0; i < block->n_rows; i++) {
             store_row(block, i);
-            if (condensed && !block->held[i])
+            if (condensed)
                 condense_row(block, i);
         }
     }

@@ -4,8 +4,8 @@
 #ifndef POLY_KERNELS_H
 #define POLY_KERNELS_H
 
+#include "polyhedra/condensed.h"
 #include "polyhedra/listing.h"
-#include "polyhedra/motion.h"
 
 #include <string.h>
 
@@ -164,8 +164,8 @@ BRC_LANES_INLINE void add_tangents(struct poly_block *block, const int32_t row[B
             force[i] = j < 3 ? a[j][i] : arm[l] * a[m][i] - arm[m] * a[l][i] + q[i] * t->c[j % 3];
         brc_lanes_cross(moment, arm, force);
         for (int i = 0; i < 3; i++) {
-            k[6 * i + j] = force[i];
-            k[6 * (i + 3) + j] = moment[i];
+            k[6 * j + i] = force[i];
+            k[6 * j + i + 3] = moment[i];
         }
     }
     for (int n = 0; n < 36; n += BRC_LANES) {
@@ -176,7 +176,8 @@ BRC_LANES_INLINE void add_tangents(struct poly_block *block, const int32_t row[B
         }
     }
     for (int i = 0; i < BRC_LANES; i++)
-        block->loosest[row[i]] = poly_least(block->loosest[row[i]], t->delta[i]);
+        if (t->weight[i] > 0)
+            block->loosest[row[i]] = poly_least(block->loosest[row[i]], t->delta[i]);
 }
 
 /* Adds the lanes to the sums of their rows, one after the other: the points of a row are summed in
@@ -239,9 +240,10 @@ BRC_LANES_INLINE void note_changes(struct poly_block *block, const struct poly_t
         return;
     for (int32_t k = 0; k < BRC_LANES && k < n; k++) {
         if (!touches[k]) {
-            block->open[task[k].row] = true;
+            bool fades = t->fades[k] != 0;
+            block->open[task[k].row] |= !fades;
             block->apart[block->n_apart++] =
-                (struct poly_apart){task[k].row, task[k].point, poly_most(-t->delta[k], 0)};
+                (struct poly_apart){task[k].row, task[k].point, poly_most(-t->delta[k], 0), fades};
         } else if (points->active[task[k].point] == 0)
             points->active[task[k].point] = 1;
     }
@@ -270,7 +272,8 @@ BRC_LANES_INLINE void act(struct poly_block *block, const struct poly_task *task
     brc_mask slips =
         push_points(block, &s, t, &f, &springs, arm, condensed, friction, viscous, ledger);
     note_changes(block, task, n, t, old);
-    if (condensed)
+    const bool *steady = block->steady;
+    if (condensed && (steady[row[0]] | steady[row[1]] | steady[row[2]] | steady[row[3]]))
         add_tangents(block, row, t, springs.xi, slips, arm, friction);
     brc_lanes *part = (brc_lanes *)&springs;
     brc_lanes_transpose(part);
@@ -370,13 +373,12 @@ BRC_LANES_INLINE brc_lanes work(double (*old)[6], const struct poly_wrenches *no
 
 BRC_LANES_INLINE void works_of_group(struct poly_block *block, struct poly_row_group *g,
                                      const int32_t *row, const struct poly_wrenches *normal,
-                                     const struct poly_wrenches *sticky, const bool viscous,
-                                     const bool condensed)
+                                     const struct poly_wrenches *sticky, const bool viscous)
 {
     const struct poly_rows *rows = block->sim->pairs.model_columns;
     double dt = block->sim->dt;
     g->work_normal = work(rows->normal_old, normal, g, row, dt);
-    g->work_bond = condensed ? brc_lanes_all(0) : work(rows->bond_old, &g->bond, g, row, dt);
+    g->work_bond = work(rows->bond_old, &g->bond, g, row, dt);
     if (viscous)
         g->work_viscous = work(rows->viscous_old, sticky, g, row, dt);
 }
@@ -388,40 +390,32 @@ BRC_LANES_INLINE void finish_group(struct poly_block *block, int32_t group, cons
     struct brc_contacts *c = &block->sim->pairs;
     struct poly_row_group *g = &block->group[group];
     const int32_t *row = block->row + BRC_LANES * group;
-    brc_lanes s[POLY_SUMS], f[3], ta[3], tb[3];
-    struct poly_wrenches normal, sticky;
+    brc_lanes s[POLY_SUMS];
+    struct poly_wrenches normal, sticky, all;
     sums_of_group(s, block, group, viscous ? POLY_SUMS : POLY_SUM_SLID + 4);
     set(normal.f, s[0], s[1], s[2]);
     set(normal.m, s[3], s[4], s[5]);
     set(sticky.f, s[POLY_SUM_VISCOUS], s[POLY_SUM_VISCOUS + 1], s[POLY_SUM_VISCOUS + 2]);
     for (int k = 0; k < 3; k++) {
         sticky.m[k] = viscous ? s[POLY_SUM_VISCOUS + 3 + k] : brc_lanes_all(0);
-        f[k] = g->bond.f[k] + normal.f[k] + s[POLY_SUM_SHEAR + k];
-        ta[k] = g->bond.m[k] + normal.m[k] + s[POLY_SUM_SHEAR + 3 + k];
+        all.f[k] = g->bond.f[k] + normal.f[k] + s[POLY_SUM_SHEAR + k];
+        all.m[k] = g->bond.m[k] + normal.m[k] + s[POLY_SUM_SHEAR + 3 + k];
         if (viscous) {
-            f[k] += sticky.f[k];
-            ta[k] += sticky.m[k];
+            all.f[k] += sticky.f[k];
+            all.m[k] += sticky.m[k];
         }
-        ta[k] = -ta[k];
         g->k[k] += s[POLY_SUM_K + k];
     }
-    brc_lanes_cross(tb, g->x, f);
-    for (int k = 0; k < 3; k++)
-        tb[k] = -ta[k] - tb[k];
-    brc_lanes_scatter3(c->f, row, f);
-    brc_lanes_scatter3(c->ta, row, ta);
-    brc_lanes_scatter3(c->tb, row, tb);
     g->gap = brc_lanes_min(g->gap, brc_lanes_at(block->nearest + BRC_LANES * group));
     g->stored = s[POLY_SUM_STORED];
     g->slid = s[POLY_SUM_SLID];
-    for (int k = 0; k < 3 && condensed; k++) {
-        normal.f[k] = f[k];
-        normal.m[k] = -ta[k];
+    if (ledger && condensed) {
+        g->work_normal = work_of_rows(c, &all, g, row, block->sim->dt) - g->slid;
+        g->work_bond = brc_lanes_all(0);
+    } else if (ledger) {
+        works_of_group(block, g, row, &normal, &sticky, viscous);
     }
-    if (ledger)
-        works_of_group(block, g, row, &normal, &sticky, viscous, condensed);
-    if (condensed)
-        g->work_normal -= g->slid;
+    put_wrenches(c, &all, g, row);
 }
 
 BRC_LANES_INLINE void finish_kernel(struct poly_block *block, const bool ledger, const bool viscous,
@@ -448,6 +442,8 @@ KERNEL(finish_ledger, finish_kernel(block, true, false, false))
 KERNEL(finish_viscous, finish_kernel(block, true, true, false))
 KERNEL(finish_condensed, finish_kernel(block, false, false, true))
 KERNEL(finish_condensed_ledger, finish_kernel(block, true, false, true))
+KERNEL(carry, carry_kernel(block, false))
+KERNEL(carry_ledger, carry_kernel(block, true))
 #define POINTS(name, ...)                                                  \
     KERNEL(points_##name, points_kernel(block, false, false, __VA_ARGS__)) \
     KERNEL(merged_##name, points_kernel(block, true, false, __VA_ARGS__))
@@ -484,7 +480,8 @@ static struct poly_kernels choose_condensed(const struct poly_params *p, bool fr
                                  .motion = BRC_OPTION(p->torsion) ? motion_torsion_condensed
                                                                   : motion_condensed,
                                  .points = points[friction][ledger],
-                                 .finish = ledger ? finish_condensed_ledger : finish_condensed};
+                                 .finish = ledger ? finish_condensed_ledger : finish_condensed,
+                                 .carry = ledger ? carry_ledger : carry};
 }
 
 static struct poly_kernels choose_kernels(const struct brc_sim *sim)
@@ -499,7 +496,7 @@ static struct poly_kernels choose_kernels(const struct brc_sim *sim)
     const struct poly_params *p = poly_params_of(sim);
     bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
     bool merged = p->features == POLY_MERGED;
-    bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
+    bool viscous = BRC_OPTION(poly_is_viscous(sim));
     if (poly_is_condensed(sim))
         return choose_condensed(p, friction, ledger);
     return (struct poly_kernels){.world = world,

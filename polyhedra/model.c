@@ -31,19 +31,20 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
                  "polyhedra.radius = %g m is not below half of the mean grain size (%g m): nothing "
                  "would be left of the grains; a tenth of the grain size is usual",
                  p->radius, mean);
-    if (p->intact == POLY_CONDENSED && p->features != POLY_MERGED)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "polyhedra.intact = condensed is for polyhedra.features = merged alone: forces of "
-                 "the other rules jump");
+    if (p->evaluation == POLY_CONDENSED && p->features != POLY_MERGED)
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "polyhedra.evaluation = condensed is for polyhedra.features = merged alone: forces of "
+            "the other rules jump; auto and literal are for all");
     return 0;
 }
 
 static int create(struct brc_sim *sim, void **state)
 {
     const struct poly_params *p = poly_params_of(sim);
-    if (p->intact == POLY_CONDENSED && sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0))
+    if (p->evaluation == POLY_CONDENSED && poly_is_viscous(sim))
         BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
-                 "polyhedra.intact = condensed goes without viscosity: set polyhedra.gn and "
+                 "polyhedra.evaluation = condensed goes without viscosity: set polyhedra.gn and "
                  "polyhedra.gt to 0 1/s, or run.regime to quasi_static");
     struct poly_state *st = *state = brc_alloc(sim->ctx, 1, sizeof *st);
     if (st == NULL)

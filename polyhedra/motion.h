@@ -201,6 +201,7 @@ BRC_LANES_INLINE void bond_law(struct poly_row_group *g, const struct bonds *bon
     brc_lanes un = brc_lanes_dot(u, n);
     set(ut, u[0] - un * n[0], u[1] - un * n[1], u[2] - un * n[2]);
     brc_lanes open = brc_lanes_max(un, brc_lanes_all(0)); /* eq:gt12:12 */
+    g->opening = un;
     for (int k = 0; k < 3; k++) {
         g->bond.f[k] = -bond->kn * open * n[k]; /* eq:gt12:11 */
         g->bond.f[k] -= bond->kt * ut[k];       /* eq:gt12:13 */
@@ -258,9 +259,10 @@ BRC_LANES_INLINE void bond_of_group(struct poly_block *block, struct poly_row_gr
     g->broken = brc_lanes_where(bonds.intact, g->broken);
 }
 
-/* What rows have used of their room; calm rows have nothing to decide in this step. */
+/* What rows have used of their room, `used` since they were looked at last; calm rows have nothing
+ * to decide in this step. */
 BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_group *g,
-                                     int32_t group)
+                                     brc_lanes used, int32_t group)
 {
     const struct brc_bodies *bodies = &block->sim->bodies;
     const struct poly_rows *rows = block->sim->pairs.model_columns;
@@ -269,13 +271,28 @@ BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_g
         double travel = bodies->travel[block->a[i]], wake = rows->wake[row];
         g->gap[k] = wake - travel - bodies->travel[block->b[i]];
         if (block->listed[i]) {
-            rows->room[row] -= g->path[k];
+            rows->room[row] -= used[k];
             block->calm[i] = rows->ready[row] && rows->room[row] > rows->calm[row];
         } else {
             block->calm[i] = travel + bodies->travel[block->b[i]] < wake;
         }
         block->calm[i] &= !(g->broken[k] > 1);
     }
+}
+
+/* The rows' columns: force on b and moments about both centres of a wrench about that of a. */
+BRC_LANES_INLINE void put_wrenches(const struct brc_contacts *c, const struct poly_wrenches *w,
+                                   const struct poly_row_group *g, const int32_t row[BRC_LANES])
+{
+    brc_lanes ta[3], tb[3];
+    brc_lanes_cross(tb, g->x, w->f);
+    for (int k = 0; k < 3; k++) {
+        ta[k] = -w->m[k];
+        tb[k] = -ta[k] - tb[k];
+    }
+    brc_lanes_scatter3(c->f, row, w->f);
+    brc_lanes_scatter3(c->ta, row, ta);
+    brc_lanes_scatter3(c->tb, row, tb);
 }
 
 /* --- condensed rows --------------------------------------------------------------------------- */
@@ -285,89 +302,55 @@ struct shifts {
     brc_lanes d[3], path, turn[3], end, both[3], stored;
 };
 
-/* Adds the motion of the step, and makes the frames those of the motion since then: slip and slope
- * are displacements. */
-BRC_LANES_INLINE void add_shift(struct shifts *s, struct frames *f, const struct poly_row_group *g,
-                                double dt)
+BRC_LANES_INLINE void gather_shifts(struct shifts *s, const struct poly_rows *rows,
+                                    const int32_t row[BRC_LANES])
 {
-    const brc_lanes none = brc_lanes_all(0), *w = s->turn;
+    const double *const from[BRC_LANES] = {rows->shift[row[0]], rows->shift[row[1]],
+                                           rows->shift[row[2]], rows->shift[row[3]]};
+    gather_fours((brc_lanes *)s, from, POLY_SHIFT);
+}
+
+BRC_LANES_INLINE void put_shifts(const struct poly_rows *rows, const int32_t row[BRC_LANES],
+                                 struct shifts *s)
+{
+    brc_lanes *part = (brc_lanes *)s;
+    for (int k = 0; k < POLY_SHIFT; k += BRC_LANES) {
+        brc_lanes_transpose(part + k);
+        for (int i = 0; i < BRC_LANES; i++)
+            brc_lanes_put(rows->shift[row[i]] + k, part[k + i]);
+    }
+}
+
+/* Adds the motion of the step. */
+BRC_LANES_INLINE void add_shifts(struct shifts *s, const struct frames *f,
+                                 const struct poly_row_group *g, double dt)
+{
     for (int k = 0; k < 3; k++) {
         s->d[k] += dt * f->slip[k];
         s->turn[k] += dt * (g->wb[k] - g->wa[k]);
         s->both[k] += f->along[k].turn;
-        f->slip[k] = s->d[k];
-        f->along[k].turn = s->both[k];
     }
     s->path += g->path;
-    set(f->along[0].slope, none, -w[2], w[1]);
-    set(f->along[1].slope, w[2], none, -w[0]);
-    set(f->along[2].slope, -w[1], w[0], none);
 }
 
-/* Force and moment of four rows: what they were, turned with the pair, less the
- * tangent times the motion. */
-BRC_LANES_INLINE void tangent_forces(brc_lanes f[8], const struct poly_rows *rows,
-                                     const struct shifts *s, const int32_t row[BRC_LANES])
+/* Makes the frames of rows that are computed literally those of the motion since they were computed
+ * last: slip and slope are displacements. Returns the path of that motion. */
+BRC_LANES_INLINE brc_lanes shift_frames(const struct poly_block *block, struct frames *f,
+                                        const struct poly_row_group *g, const struct numbers *i)
 {
-    brc_lanes held[6], turned[6], both[3], slope[36], motion[6];
-    const double *from[BRC_LANES];
-    brc_lanes_gather6(held, rows->held, row);
-    scale(both, s->both, brc_lanes_all(2));
-    brc_lanes_cross(turned, both, held);
-    brc_lanes_cross(turned + 3, both, held + 3);
-    set(motion, s->d[0], s->d[1], s->d[2]);
-    set(motion + 3, s->turn[0], s->turn[1], s->turn[2]);
-    for (int k = 0; k < 6; k++)
-        f[k] = held[k] + turned[k];
-    for (int i = 0; i < BRC_LANES; i++)
-        from[i] = rows->tangent[row[i]];
-    gather_fours(slope, from, 36);
-    for (int k = 0; k < 36; k++)
-        f[k / 6] -= slope[k] * motion[k % 6];
-    f[6] = f[7] = brc_lanes_all(0);
-}
-
-/* Rows that stay condensed in this step have their forces from the tangent; the points of the
- * others are computed with the motion since they were computed last. Returns which stay. */
-BRC_LANES_INLINE brc_mask hold_group(struct poly_block *block, int32_t group, struct frames *f,
-                                     const struct numbers *i)
-{
-    const struct poly_row_group *g = &block->group[group];
     const struct poly_rows *rows = block->sim->pairs.model_columns;
-    const double *from[BRC_LANES];
+    const brc_lanes none = brc_lanes_all(0);
     struct shifts s;
-    brc_lanes force[8], *part = (brc_lanes *)&s;
-    for (int k = 0; k < BRC_LANES; k++)
-        from[k] = rows->shift[i->row[k]];
-    gather_fours(part, from, POLY_SHIFT);
-    add_shift(&s, f, g, block->sim->dt);
-    brc_mask held = brc_lanes_less(s.path, s.end);
-    clear(force, sizeof force);
-    if (brc_lanes_any(held))
-        tangent_forces(force, rows, &s, i->row);
-    for (int k = 0; k < POLY_SHIFT; k += BRC_LANES)
-        brc_lanes_transpose(part + k);
-    brc_lanes_transpose(force);
-    brc_lanes_transpose(force + BRC_LANES);
-    for (int k = 0, n = BRC_LANES * group; k < BRC_LANES && n < block->n_rows; k++, n++) {
-        for (int j = 0; j < POLY_SHIFT; j += BRC_LANES)
-            brc_lanes_put(rows->shift[i->row[k]] + j, part[j + k]);
-        block->held[n] = held[k];
-        if (!held[k])
-            continue;
-        brc_lanes_put(block->sum[n], force[k]);
-        brc_lanes_put(block->sum[n] + BRC_LANES, force[BRC_LANES + k]);
+    gather_shifts(&s, rows, i->row);
+    add_shifts(&s, f, g, block->sim->dt);
+    for (int k = 0; k < 3; k++) {
+        f->slip[k] = s.d[k];
+        f->along[k].turn = s.both[k];
     }
-    return held;
-}
-
-/* The bonds of rows that are condensed count with their springs. */
-BRC_LANES_INLINE void leave_bonds(struct poly_row_group *g, brc_mask held)
-{
-    mask(g->bond.f, ~held, g->bond.f);
-    mask(g->bond.m, ~held, g->bond.m);
-    mask(g->k, ~held, g->k);
-    g->broken = brc_lanes_where(~held, g->broken);
+    set(f->along[0].slope, none, -s.turn[2], s.turn[1]);
+    set(f->along[1].slope, s.turn[2], none, -s.turn[0]);
+    set(f->along[2].slope, -s.turn[1], s.turn[0], none);
+    return s.path;
 }
 
 BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion,
@@ -375,8 +358,6 @@ BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion
 {
     const struct brc_contacts *c = &block->sim->pairs;
     clear((brc_lanes *)block->sum, sizeof block->sum);
-    if (condensed)
-        clear((brc_lanes *)block->tangent, sizeof block->tangent);
     for (int32_t group = 0; BRC_LANES * group < block->n_rows; group++) {
         struct poly_row_group *g = &block->group[group];
         struct numbers i;
@@ -384,20 +365,17 @@ BRC_LANES_INLINE void motion_kernel(struct poly_block *block, const bool torsion
         bool has_bond = false;
         numbers_of(&i, block, group);
         motion_of_group(block, g, &f, &i);
-        brc_mask held = {0};
+        brc_lanes used = g->path;
         if (condensed)
-            held = hold_group(block, group, &f, &i);
+            used = shift_frames(block, &f, g, &i);
         for (int k = 0; k < BRC_LANES; k++)
-            has_bond |= c->status[i.row[k]] == BRC_INTACT && !held[k];
+            has_bond |= c->status[i.row[k]] == BRC_INTACT;
         g->k[0] = g->k[1] = g->k[2] = g->broken = g->bond_stored = brc_lanes_all(0);
         clear((brc_lanes *)&g->bond, sizeof g->bond);
         if (has_bond)
             bond_of_group(block, g, &i, torsion);
-        if (condensed && has_bond)
-            leave_bonds(g, held);
-        rooms_of_group(block, g, group);
-        if (!condensed || brc_lanes_any(~held))
-            put_frames(block->frame + BRC_LANES * group, &f);
+        rooms_of_group(block, g, used, group);
+        put_frames(block->frame + BRC_LANES * group, &f);
     }
 }
 

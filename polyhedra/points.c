@@ -36,6 +36,7 @@ static void add_known(struct poly_block *block, int32_t i, size_t p, const struc
     int lane = k % BRC_LANES;
     to->delta[lane] = t->delta;
     to->weight[lane] = t->weight;
+    to->fades[lane] = 0;
     for (int m = 0; m < 3; m++) {
         to->n[m][lane] = t->n[m];
         to->x[m][lane] = t->x[m];
@@ -183,8 +184,10 @@ static double list_point(struct poly_block *block, int32_t i, size_t p, double r
 
 /* A point that does not touch: its spring is released, and it goes to sleep when the path that it
  * is free for is worth it. */
-static void come_apart(struct poly_block *block, int32_t i, size_t p, double path)
+static void come_apart(struct poly_block *block, const struct poly_apart *apart)
 {
+    int32_t i = apart->row;
+    size_t p = (size_t)apart->point;
     struct brc_sim *sim = block->sim;
     const struct poly_rows *rows = sim->pairs.model_columns;
     struct poly_points *points = sim->pairs.point_columns;
@@ -198,11 +201,13 @@ static void come_apart(struct poly_block *block, int32_t i, size_t p, double pat
     }
     *poly_weight(points, p) = 0;
     points->active[p] = 0;
-    if (points->kind[p] == POLY_EDGES)
+    if (points->kind[p] == POLY_EDGES) {
         points->item[p][POLY_ITEM_SIDE] = 0;
-    if (path < DOZE * block->group[i / BRC_LANES].path[i % BRC_LANES])
+        points->hold[p] = apart->fades ? POLY_FADES : HUGE_VAL;
+    }
+    if (apart->path < DOZE * block->group[i / BRC_LANES].path[i % BRC_LANES])
         return;
-    poly_sleep_point(&sim->pairs, row, p, rows->room[row] - path);
+    poly_sleep_point(&sim->pairs, row, p, rows->room[row] - apart->path);
 }
 
 /* The last point first. */
@@ -220,7 +225,7 @@ void poly_work_off(struct poly_block *block)
     if (block->n_apart > 1)
         qsort(block->apart, (size_t)block->n_apart, sizeof *block->apart, compare_apart);
     for (int32_t i = 0; i < block->n_apart; i++)
-        come_apart(block, block->apart[i].row, (size_t)block->apart[i].point, block->apart[i].path);
+        come_apart(block, &block->apart[i]);
     block->n_points = 0;
 }
 

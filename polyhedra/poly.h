@@ -42,15 +42,16 @@
     CHOICE(features, "closed|strict|merged", "merged",                                            \
            "feature pairs that are springs: all within reach, eq 1; feet strictly inside; each "  \
            "physical contact once, with a continuous force")                                      \
-    CHOICE(intact, "literal|condensed", "literal",                                                \
-           "bonded pairs: bond and springs, each at each step; or their sum, linear in the "      \
-           "motion since all were computed")                                                      \
-    REAL(intact_path, "1", "0.005", "(0, 0.05]",                                                  \
+    CHOICE(evaluation, "auto|literal|condensed", "auto",                                          \
+           "bond and springs of a pair: each at each step; or, while the same ones act, their "   \
+           "sum, linear in the motion since all were computed; auto: condensed under merged "     \
+           "without viscosity")                                                                   \
+    REAL(condensed_path, "1", "0.005", "(0, 0.05]",                                               \
          "condensed: relative path, in radii R, until all are computed anew")
 
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
 enum poly_area { POLY_AREA_ERODED, POLY_AREA_FACET };
-enum poly_intact { POLY_LITERAL, POLY_CONDENSED };
+enum poly_evaluation { POLY_AUTO, POLY_LITERAL, POLY_CONDENSED };
 
 struct poly_params {
     BRC_PARAM_MEMBERS(POLY_PARAMS)
@@ -65,6 +66,7 @@ struct poly_params {
     SCALAR(double, calm, BRC_SCRATCH, "m", "items stay right while there is more room than so") \
     SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")      \
     VECTOR(double, bond, POLY_BOND, BRC_STATE, "m, 1, m2", "bond, in both frames (POLY_BOND)")  \
+    SCALAR(uint8_t, carried, BRC_STATE, "1", "1: condensed, carried along by its tangent")      \
     VECTOR(double, shift, POLY_SHIFT, BRC_STATE, "m, 1",                                        \
            "condensed: motion since all was computed (POLY_SHIFT)")                             \
     VECTOR(double, held, 6, BRC_STATE, "N, N m", "condensed: force and moment about a then")    \
@@ -89,20 +91,24 @@ static inline double *poly_bond_length(const struct poly_rows *rows, size_t row)
 }
 
 /* Points: feature pairs near enough to touch before the row is listed anew. */
-#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                      \
-    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")             \
-    SCALAR(uint8_t, active, BRC_STATE, "1",                                                    \
-           "0 apart, 1 in contact, 2 the same with edges whose "                               \
-           "cross product points from b to a")                                                 \
-    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")          \
-    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                         \
-    VECTOR(int32_t, near, POLY_NEAR, BRC_STATE, "1",                                           \
-           "vertices that may lower the weight; -1: no more; -2 first: too many to name")      \
-    SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room") \
-    SCALAR(double, hold, BRC_STATE, "m", "the place is sure while the row has more room")      \
-    VECTOR(int32_t, item, POLY_ITEM, BRC_SCRATCH, "1", "what the touch is computed from")      \
-    VECTOR(double, spring, POLY_SPRING, BRC_STATE, "m, 1",                                     \
+#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                        \
+    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")               \
+    SCALAR(uint8_t, active, BRC_STATE, "1",                                                      \
+           "0 apart, 1 in contact, 2 the same with edges whose "                                 \
+           "cross product points from b to a")                                                   \
+    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")            \
+    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                           \
+    VECTOR(int32_t, near, POLY_NEAR, BRC_STATE, "1",                                             \
+           "vertices that may lower the weight; -1: no more; -2 first: too many to name")        \
+    SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room")   \
+    SCALAR(double, hold, BRC_STATE, "m",                                                         \
+           "vertices: the place is sure while the row has more room; edges: POLY_FADES or more") \
+    VECTOR(int32_t, item, POLY_ITEM, BRC_SCRATCH, "1", "what the touch is computed from")        \
+    VECTOR(double, spring, POLY_SPRING, BRC_STATE, "m, 1",                                       \
            "tangential displacement xi, eq 9; weight; normal from a to b; 0")
+
+/* edges that are apart, and can but touch with a weight that grows from 0 */
+#define POLY_FADES (-HUGE_VAL)
 
 struct poly_points {
     POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
@@ -149,9 +155,17 @@ static inline const struct poly_params *poly_params_of(const struct brc_sim *sim
     return sim->params;
 }
 
+static inline bool poly_is_viscous(const struct brc_sim *sim)
+{
+    const struct poly_params *p = poly_params_of(sim);
+    return sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
+}
+
 static inline bool poly_is_condensed(const struct brc_sim *sim)
 {
-    return BRC_OPTION(poly_params_of(sim)->intact == POLY_CONDENSED);
+    const struct poly_params *p = poly_params_of(sim);
+    return BRC_OPTION(p->evaluation != POLY_LITERAL && p->features == POLY_MERGED &&
+                      !poly_is_viscous(sim));
 }
 
 /* Smaller one of the radii of two cores about their centres. */

@@ -65,6 +65,7 @@ BRC_LANES_INLINE void clear(brc_lanes *x, size_t size)
 
 BRC_LANES_INLINE void full_weight(struct poly_touches *t)
 {
+    t->fades = (brc_mask){0};
     t->weight = brc_lanes_all(1);
     for (int k = 0; k < 3; k++)
         t->g[k] = t->c[k] = brc_lanes_all(0);
@@ -327,9 +328,10 @@ BRC_LANES_INLINE brc_mask touch_lines(struct poly_touches *t, const struct poly_
         weigh_crossing(t, &x, block->ell, d);
     touches &= positive(t->weight);
     if (brc_lanes_any(~touches)) {
-        brc_lanes path =
-            brc_lanes_max(gap_of_edges(&x) - block->rest, path_to_inside(&x, reach, block->skin));
+        brc_lanes free = path_to_inside(&x, reach, block->skin);
+        brc_lanes path = brc_lanes_max(gap_of_edges(&x) - block->rest, free);
         t->delta = brc_lanes_pick(touches, t->delta, -path);
+        t->fades = positive(free);
     }
     return touches;
 }

@@ -68,9 +68,8 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
 void poly_walls(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
-    const struct poly_params *p = poly_params_of(sim);
     struct brc_contacts *c = &sim->platens;
-    bool viscous = BRC_OPTION(sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0));
+    bool viscous = BRC_OPTION(poly_is_viscous(sim));
     const struct poly_rows *rows = c->model_columns;
     for (size_t row = 0; row < c->n; row++) {
         if (poly_is_awake(sim, c, row) && poly_list_wall(sim, st, row) != 0)

@@ -26,6 +26,7 @@ static const struct setup {
     {"walls", "polyhedra", "", "kind: compression; loading: fixed; rate: 1e-6 1/s", ""},
     {"wall_friction", "polyhedra", "",
      "kind: compression; loading: fixed; rate: 1e-6 1/s; friction: 0.3", ""},
+    {"condensed", "polyhedra", "evaluation: condensed", "", ""},
     {"gravity", "polyhedra", "", "", "gravity: 0 m/s2, 0 m/s2, -9.81 m/s2"},
     {"ledger", "polyhedra", "", "", "ledger: on"},
     {"none", "vgcm", "", "", ""},
@@ -46,8 +47,9 @@ enum { N_SETUPS = sizeof setups / sizeof setups[0] };
 /* Settings of a model with all its options off. */
 static const char *plain_of(const char *model)
 {
-    return strcmp(model, "vgcm") == 0 ? "softening: none; mu: 0; viscous: 0 1/s"
-                                      : "mu: 0; torsion: off; gn: 0 1/s; gt: 0 1/s";
+    return strcmp(model, "vgcm") == 0
+               ? "softening: none; mu: 0; viscous: 0 1/s"
+               : "mu: 0; torsion: off; gn: 0 1/s; gt: 0 1/s; evaluation: literal";
 }
 
 static void run_setup(const struct setup *s)

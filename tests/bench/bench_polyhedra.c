@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Time of a whole step of polyhedra: the 1000 bonded Voronoi cells of cases/gt12_block.yaml at half
- * of their peak load by each rule and condensed, the same cells unbonded in isotropic compression,
- * the 512 dodecahedra, a step in which many bonds break against the steps before it, and the part
- * of a run that goes into lists. */
+ * of their peak load by each rule, condensed and literal, the same cells unbonded in isotropic
+ * compression, the 512 dodecahedra, a step in which many bonds break against the steps before it,
+ * and the part of a run that goes into lists. */
 #include "bench.h"
 
 #include "common/grid.h"
@@ -86,9 +86,10 @@ static void slow_down(struct brc_sim *sim)
 }
 
 static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen, const char *rule,
-                   const char *intact, const char *name, double bar)
+                   const char *evaluation, const char *name, double bar)
 {
-    const char *const settings[][2] = {{"features", rule}, {"intact", intact}, {NULL, NULL}};
+    const char *const settings[][2] = {
+        {"features", rule}, {"evaluation", evaluation}, {NULL, NULL}};
     struct brc_sim sim;
     struct bench_times t = {.n = 0};
     make(ctx, &sim, specimen, settings, "compression", "1e-5 1/s");
@@ -112,9 +113,10 @@ static void compress(struct brc_sim *sim, double rate)
             b->v[i][k] = -rate * (b->x[i][k] - 0.05);
 }
 
-static void unbonded(struct brc_context *ctx, const struct brc_specimen *specimen)
+static void unbonded(struct brc_context *ctx, const struct brc_specimen *specimen,
+                     const char *evaluation, const char *name, double bar)
 {
-    const char *const settings[][2] = {{"bonds", "off"}, {NULL, NULL}};
+    const char *const settings[][2] = {{"bonds", "off"}, {"evaluation", evaluation}, {NULL, NULL}};
     struct brc_sim sim;
     struct bench_times t = {.n = 0};
     make(ctx, &sim, specimen, settings, "none", "1e-5 1/s");
@@ -126,7 +128,7 @@ static void unbonded(struct brc_context *ctx, const struct brc_specimen *specime
         compress(&sim, 1e-5);
         bench_note(&t, step_seconds(&sim));
     }
-    report_steps(&t, &sim, "polyhedra_unbonded_1000_ms_step", 3);
+    report_steps(&t, &sim, name, bar);
     brc_sim_free(&sim);
 }
 
@@ -282,11 +284,12 @@ int main(void)
     set(&ctx, brc_specimen_param_list, &s, "size", "10 cm, 10 cm, 10 cm");
     set(&ctx, brc_specimen_param_list, &s, "cells", "10, 10, 10");
     must(&ctx, brc_specimen_create(&ctx, &s, &specimen));
-    bonded(&ctx, &specimen, "merged", "literal", "polyhedra_bonded_1000_ms_step", 1.5);
-    bonded(&ctx, &specimen, "merged", "condensed", "polyhedra_bonded_condensed_1000_ms_step", 1.5);
-    bonded(&ctx, &specimen, "strict", "literal", "polyhedra_bonded_strict_1000_ms_step", 0);
-    bonded(&ctx, &specimen, "closed", "literal", "polyhedra_bonded_closed_1000_ms_step", 0);
-    unbonded(&ctx, &specimen);
+    bonded(&ctx, &specimen, "merged", "auto", "polyhedra_bonded_1000_ms_step", 1.5);
+    bonded(&ctx, &specimen, "merged", "literal", "polyhedra_bonded_literal_1000_ms_step", 1.5);
+    bonded(&ctx, &specimen, "strict", "auto", "polyhedra_bonded_strict_1000_ms_step", 0);
+    bonded(&ctx, &specimen, "closed", "auto", "polyhedra_bonded_closed_1000_ms_step", 0);
+    unbonded(&ctx, &specimen, "auto", "polyhedra_unbonded_1000_ms_step", 3);
+    unbonded(&ctx, &specimen, "literal", "polyhedra_unbonded_literal_1000_ms_step", 3);
     breaking(&ctx, &specimen);
     listing(&ctx, &specimen, strong_bonds, "1e-5 1/s", "polyhedra_list_share_calm");
     listing(&ctx, &specimen, weak_bonds, "1.5e-5 1/s", "polyhedra_list_share");

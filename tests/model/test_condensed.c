@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bonded pairs of polyhedra with condensed springs against the literal ones. */
+/* Pairs of polyhedra with condensed springs against the literal ones. */
 #include "common/io_h5.h"
 #include "polyhedra/poly.h"
 #include "tests/fixture.h"
@@ -14,20 +14,25 @@ static const struct brc_h5_extra nothing = {NULL, 0, NULL, 0};
 
 enum { STEPS = 800 };
 
+static void load(struct fixture *f, const char *kind, const char *settings, const char *run)
+{
+    char all[200], test[100];
+    snprintf(all, sizeof all, "radius: 1 mm; mu: 0.3; %s", settings);
+    snprintf(test, sizeof test, "kind: %s; loading: fixed; rate: 4e-6 1/s; strain_max: 1", kind);
+    fixture_specimen(f, "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
+                        "jitter: 0.6; seed: 3");
+    fixture_sim(f, &brc_model_polyhedra, all, test, run);
+}
+
 /* A pack that is pressed until many springs slip; part of it breaks when bonds are weak. */
 static void press(struct fixture *f, const char *settings, const char *run)
 {
-    char all[200];
-    snprintf(all, sizeof all, "radius: 1 mm; mu: 0.3; %s", settings);
-    fixture_specimen(f, "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
-                        "jitter: 0.6; seed: 3");
-    fixture_sim(f, &brc_model_polyhedra, all,
-                "kind: compression; loading: fixed; rate: 4e-6 1/s; strain_max: 1", run);
+    load(f, "compression", settings, run);
 }
 
-static double force_after(struct fixture *f, const char *settings)
+static double force_after(struct fixture *f, const char *kind, const char *settings)
 {
-    press(f, settings, "");
+    load(f, kind, settings, "");
     fixture_steps(f, STEPS);
     return f->sim.rig.force;
 }
@@ -37,7 +42,7 @@ static size_t count_held(const struct fixture *f)
     const struct poly_rows *rows = f->sim.pairs.model_columns;
     size_t n = 0;
     for (size_t i = 0; i < f->sim.pairs.n; i++)
-        n += rows->shift[i][POLY_SHIFT_END] > 0;
+        n += rows->carried[i];
     return n;
 }
 
@@ -45,13 +50,13 @@ static size_t count_held(const struct fixture *f)
 static void load_is_that_of_literal_springs(void **state)
 {
     struct fixture *f = *state;
-    double literal = force_after(f, "eps_th: 0.05"), error[2];
+    double literal = force_after(f, "compression", "eps_th: 0.05; evaluation: literal"), error[2];
     static const char *const paths[2] = {"0.01", "0.001"};
     for (int i = 0; i < 2; i++) {
         char settings[100];
-        snprintf(settings, sizeof settings, "eps_th: 0.05; intact: condensed; intact_path: %s",
-                 paths[i]);
-        error[i] = fabs(force_after(f, settings) / literal - 1);
+        snprintf(settings, sizeof settings,
+                 "eps_th: 0.05; evaluation: condensed; condensed_path: %s", paths[i]);
+        error[i] = fabs(force_after(f, "compression", settings) / literal - 1);
         print_message("path %s R: load off by %.2e, %zu rows condensed, residual %.1e\n", paths[i],
                       error[i], count_held(f), brc_ledger_residual(&f->sim.ledger));
         assert_true(count_held(f) > 20);
@@ -62,12 +67,85 @@ static void load_is_that_of_literal_springs(void **state)
     assert_true(error[1] < error[0] / 2);
 }
 
+/* Bonds begin to pull, or cease to, within paths of this size: a tangent that went on through that
+ * would be off by 4e-4. */
+static void bonds_begin_to_pull(void **state)
+{
+    struct fixture *f = *state;
+    double literal = force_after(f, "tension", "eps_th: 0.05; evaluation: literal");
+    double condensed = force_after(f, "tension", "eps_th: 0.05; condensed_path: 0.05");
+    print_message("load off by %.2e, %zu rows condensed\n", condensed / literal - 1, count_held(f));
+    assert_true(count_held(f) > 20);
+    CHECK_NEAR(condensed, literal, 0, 1.5e-4);
+}
+
+/* --- acting springs --------------------------------------------------------------------------- */
+
+struct changes {
+    double *weight; /* of each point that acts in the present pose */
+    size_t n_points, n;
+    double largest; /* weight of a point that acts now or then, but not both */
+};
+
+static void note_weight(void *user, const struct poly_active *active)
+{
+    ((struct changes *)user)->weight[active->point] = active->touch.weight;
+}
+
+static void look_at_row(struct changes *changes, const struct brc_contacts *c, size_t row)
+{
+    const struct poly_points *points = c->point_columns;
+    for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
+        double then = *poly_weight(points, p), now = changes->weight[p];
+        changes->n_points += then > 0;
+        if ((then > 0) == (now > 0))
+            continue;
+        assert_int_equal(points->kind[p], POLY_EDGES);
+        changes->largest = fmax(changes->largest, fmax(then, now));
+        changes->n++;
+    }
+}
+
+static void look_at_springs(struct changes *changes, const struct fixture *f)
+{
+    const struct brc_contacts *c = &f->sim.pairs;
+    const struct poly_rows *rows = c->model_columns;
+    changes->weight = test_calloc(c->points.n, sizeof *changes->weight);
+    poly_each_active(&f->sim, f->sim.state, note_weight, changes);
+    for (size_t i = 0; i < c->n; i++)
+        if (rows->carried[i])
+            look_at_row(changes, c, i);
+    test_free(changes->weight);
+}
+
+/* While a row is condensed the springs that act are those that did when it was computed, but for
+ * edges that come or go by their ends: their weight is 3 (s / (R sin))^2 after a path s, below
+ * 3 (0.005 / 0.1)^2 where it counts at all. */
+static void the_same_springs_act(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const settings[] = {"eps_th: 0.05", "bonds: off"};
+    for (int i = 0; i < 2; i++) {
+        struct changes changes = {.n = 0};
+        press(f, settings[i], "");
+        for (int k = 0; k < STEPS; k += 10) {
+            fixture_steps(f, 10);
+            look_at_springs(&changes, f);
+        }
+        print_message("%s: %zu of %zu springs of condensed rows have come or gone, weights up to "
+                      "%.1e\n",
+                      settings[i], changes.n, changes.n_points, changes.largest);
+        assert_true(changes.n_points > 1000);
+        assert_true(changes.largest < 7.5e-3);
+    }
+}
+
 /* The sum that is carried along is what bond and springs give literally, for the present pose. */
 static void tangent_is_the_slope(void **state)
 {
     struct fixture *f = *state;
     double largest = 0, off = 0, plain = 0;
-    press(f, "eps_th: 0.05; intact: condensed; intact_path: 0.005; mu: 0", "");
+    press(f, "eps_th: 0.05; evaluation: condensed; condensed_path: 0.005; mu: 0", "");
     fixture_steps(f, STEPS);
     struct brc_contacts *c = &f->sim.pairs;
     struct poly_rows *rows = c->model_columns;
@@ -76,12 +154,11 @@ static void tangent_is_the_slope(void **state)
     bool *was_held = malloc(c->n * sizeof *was_held);
     for (size_t i = 0; i < c->n; i++) {
         const double *shift = rows->shift[i];
-        was_held[i] = shift[POLY_SHIFT_END] > 0 &&
-                      shift[POLY_SHIFT_PATH] > 0.3 * shift[POLY_SHIFT_END] &&
+        was_held[i] = rows->carried[i] && shift[POLY_SHIFT_PATH] > 0.3 * shift[POLY_SHIFT_END] &&
                       shift[POLY_SHIFT_PATH] < 0.9 * shift[POLY_SHIFT_END];
         memcpy(condensed[i], c->f[i], sizeof condensed[i]);
         memcpy(held[i], rows->held[i], sizeof held[i]);
-        rows->shift[i][POLY_SHIFT_END] = 0;
+        rows->carried[i] = 0;
     }
     double now[3];
     fixture_carry(f, 0);
@@ -111,7 +188,7 @@ static void bits_are_the_same(void **state)
 {
     struct fixture *f = *state;
     static const char *const sets[] = {"simd: base", "simd: avx2", "simd: avx512"};
-    static const char settings[] = "eps_th: 1e-3; intact: condensed; intact_path: 0.01";
+    static const char settings[] = "eps_th: 1e-3; evaluation: condensed; condensed_path: 0.01";
     char path[64];
     uint64_t hash[BRC_N_SIMD] = {0};
     for (int set = 0; set < BRC_N_SIMD; set++) {
@@ -139,8 +216,9 @@ static void bits_are_the_same(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {FIXTURE_TEST(load_is_that_of_literal_springs),
-                                       FIXTURE_TEST(tangent_is_the_slope),
-                                       FIXTURE_TEST(bits_are_the_same)};
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(load_is_that_of_literal_springs), FIXTURE_TEST(bonds_begin_to_pull),
+        FIXTURE_TEST(the_same_springs_act), FIXTURE_TEST(tangent_is_the_slope),
+        FIXTURE_TEST(bits_are_the_same)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,7 +15,9 @@ struct subject {
     double stable_part; /* of the step limit; less where springs begin and end within a step */
 };
 static const struct subject SUBJECTS[] = {
-    {"polyhedra", "radius: 1 mm; kn: 1e8 N/m; kt: 1e8 N/m; bn: 20 GPa; bt: 20 GPa; gn: 0 1/s",
+    {"polyhedra",
+     "radius: 1 mm; kn: 1e8 N/m; kt: 1e8 N/m; bn: 20 GPa; bt: 20 GPa; gn: 0 1/s; "
+     "evaluation: literal",
      "radius: 1 mm; bn: 20 GPa; bt: 20 GPa; gn: 0 1/s; eps_th: 5e-4; theta_th: 2e-3 rad", 20e9,
      0.7},
     {"vgcm",
