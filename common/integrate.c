@@ -8,14 +8,16 @@
 static void rotate_axis(double q[4], double lb[3], int axis, double inertia, double dt)
 {
     int j = (axis + 1) % 3, k = (axis + 2) % 3;
-    double angle = dt * lb[axis] / inertia;
-    double c = cos(angle), s = sin(angle);
-    double lj = c * lb[j] + s * lb[k];
-    lb[k] = c * lb[k] - s * lb[j];
-    lb[j] = lj;
-    double turn[4] = {cos(angle / 2), 0, 0, 0}, old[4] = {q[0], q[1], q[2], q[3]};
-    turn[1 + axis] = sin(angle / 2);
-    brc_quat_mul(q, old, turn);
+    double half[4], phi[3] = {dt * lb[axis] / inertia, 0, 0}, lj = lb[j];
+    brc_quat_from_rotation(half, phi);
+    double c = half[0], s = half[1], cos_phi = 1 - 2 * s * s, sin_phi = 2 * s * c;
+    lb[j] = cos_phi * lj + sin_phi * lb[k];
+    lb[k] = cos_phi * lb[k] - sin_phi * lj;
+    double q0 = q[0], qj = q[1 + j];
+    q[0] = c * q0 - s * q[1 + axis];
+    q[1 + axis] = c * q[1 + axis] + s * q0;
+    q[1 + j] = c * qj + s * q[1 + k];
+    q[1 + k] = c * q[1 + k] - s * qj;
 }
 
 static void quat_normalise(double q[4])

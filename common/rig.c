@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "rig.h"
 
+#include "lanes.h"
+
 #include "sim.h"
 #include "vec.h"
 
@@ -124,19 +126,30 @@ void brc_rig_free(struct brc_sim *sim)
     brc_table_free(&sim->rig.curve.table);
 }
 
+/* Sum of the sizes of n forces; *active is how many of them act. */
+static double sum_of_sizes(double (*f)[3], size_t n, size_t *active)
+{
+    double sum = 0;
+    *active = 0;
+    for (size_t i = 0; i < n; i += BRC_LANES) { /* rows past the last are room */
+        brc_lanes v[3];
+        brc_lanes_at3(v, f + i);
+        brc_lanes size = brc_lanes_sqrt(brc_lanes_dot(v, v));
+        for (size_t k = 0; k < BRC_LANES && i + k < n; k++) {
+            sum += size[k];
+            *active += size[k] > 0;
+        }
+    }
+    return sum;
+}
+
 /* Mean unbalanced force on a grain over mean contact force. */
 static double unbalanced_ratio(const struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
-    double unbalanced = 0, contact = 0;
-    size_t active = 0;
-    for (size_t i = 0; i < b->n_grains; i++)
-        unbalanced += brc_norm(b->f[i]);
-    for (size_t i = 0; i < sim->pairs.n; i++) {
-        double f = brc_norm(sim->pairs.f[i]);
-        contact += f;
-        active += f > 0;
-    }
+    size_t acting, active;
+    double unbalanced = sum_of_sizes(b->f, b->n_grains, &acting);
+    double contact = sum_of_sizes(sim->pairs.f, sim->pairs.n, &active);
     if (contact <= 0)
         return 0;
     return unbalanced / (double)b->n_grains / (contact / (double)active);

@@ -19,9 +19,10 @@ enum {
 
 /* Four touches, as in struct poly_touch; where nothing touches all is zero but for delta, and
  * -delta is a relative path of the bodies that cannot bring them in touch. Where they fade, they
- * can but touch with a weight that grows from 0: edges, by their ends. */
+ * can but touch with a weight that grows from 0: edges, by their ends. Those that touch do so for a
+ * path of `lasts` at least, as long as the foot of a vertex keeps its place. */
 struct poly_touches {
-    brc_lanes n[3], x[3], delta, weight, g[3], c[3];
+    brc_lanes n[3], x[3], delta, weight, g[3], c[3], lasts;
     brc_mask fades;
 };
 
@@ -159,7 +160,7 @@ struct poly_block {
     int32_t pair_row;
     int32_t n_tasks[POLY_N_LISTS];
     double nearest[POLY_ROWS + 1]; /* the smallest gap of a row's points */
-    double loosest[POLY_ROWS + 1]; /* the smallest overlap, while it is condensed */
+    double lasting[POLY_ROWS + 1]; /* path for which its springs act, while its tangent is found */
     _Alignas(64) double frame[POLY_ROWS + 1][POLY_FRAME];
     double sum[POLY_ROWS + 1][POLY_SUMS];
     double tangent[POLY_ROWS + 1][36]; /* column after column */

@@ -251,7 +251,9 @@ static void hold_bond(const struct poly_block *block, int32_t i, double held[6],
     }
 }
 
-/* Relative path for which no point that sleeps can touch, `most` at most. */
+/* Relative path for which no point that sleeps can touch, `most` at most. That is also one for
+ * which no vertex of `strict` leaves its face, since one of its edges comes or goes across the
+ * face's then. */
 static double path_of_sleepers(const struct brc_contacts *c, size_t row, double most)
 {
     const struct poly_rows *rows = c->model_columns;
@@ -319,7 +321,7 @@ static void condense_row(struct poly_block *block, int32_t i)
     shift[POLY_SHIFT_STORED] = stored;
     if (!block->steady[i] || block->open[i])
         return;
-    double end = poly_least(block->loosest[i], path_left(block, i));
+    double end = poly_least(block->lasting[i], path_left(block, i));
     if (is_intact)
         end = poly_least(end, path_of_bond(block, i));
     if (end < CONDENSE * g->path[lane])
@@ -389,7 +391,7 @@ void poly_forces(struct brc_sim *sim, void *state)
         fetch_rows(block, condensed);
         st->kernels.motion(block);
         for (int32_t i = 0; i < block->n_rows; i++) {
-            block->nearest[i] = block->loosest[i] = HUGE_VAL;
+            block->nearest[i] = block->lasting[i] = HUGE_VAL;
             block->open[i] = false;
             if (!block->calm[i] && prepare_row(block, i) != 0)
                 return;

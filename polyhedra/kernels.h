@@ -177,7 +177,7 @@ BRC_LANES_INLINE void add_tangents(struct poly_block *block, const int32_t row[B
     }
     for (int i = 0; i < BRC_LANES; i++)
         if (t->weight[i] > 0)
-            block->loosest[row[i]] = poly_least(block->loosest[row[i]], t->delta[i]);
+            block->lasting[row[i]] = poly_least(block->lasting[row[i]], t->lasts[i]);
 }
 
 /* Adds the lanes to the sums of their rows, one after the other: the points of a row are summed in
@@ -453,9 +453,13 @@ POINTS(rub, true, false, false)
 POINTS(rub_ledger, true, false, true)
 POINTS(rub_viscous, true, true, false)
 POINTS(rub_viscous_ledger, true, true, true)
-KERNEL(condensed_plain, points_kernel(block, true, true, false, false, false))
-KERNEL(condensed_rub, points_kernel(block, true, true, true, false, false))
-KERNEL(condensed_rub_ledger, points_kernel(block, true, true, true, false, true))
+#undef POINTS
+#define POINTS(name, ...)                                                           \
+    KERNEL(condensed_points_##name, points_kernel(block, false, true, __VA_ARGS__)) \
+    KERNEL(condensed_merged_##name, points_kernel(block, true, true, __VA_ARGS__))
+POINTS(plain, false, false, false)
+POINTS(rub, true, false, false)
+POINTS(rub_ledger, true, false, true)
 #undef POINTS
 #undef KERNEL
 
@@ -473,13 +477,17 @@ __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_li
 
 static struct poly_kernels choose_condensed(const struct poly_params *p, bool friction, bool ledger)
 {
-    static poly_kernel *const points[2][2] = {{condensed_plain, condensed_plain},
-                                              {condensed_rub, condensed_rub_ledger}};
+    static poly_kernel *const points[2][2][2] = {
+        {{condensed_points_plain, condensed_points_plain},
+         {condensed_points_rub, condensed_points_rub_ledger}},
+        {{condensed_merged_plain, condensed_merged_plain},
+         {condensed_merged_rub, condensed_merged_rub_ledger}}};
+    bool merged = p->features == POLY_MERGED;
     return (struct poly_kernels){.world = world,
                                  .list = list,
                                  .motion = BRC_OPTION(p->torsion) ? motion_torsion_condensed
                                                                   : motion_condensed,
-                                 .points = points[friction][ledger],
+                                 .points = points[merged][friction][ledger],
                                  .finish = ledger ? finish_condensed_ledger : finish_condensed,
                                  .carry = ledger ? carry_ledger : carry};
 }

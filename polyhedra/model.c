@@ -31,11 +31,11 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
                  "polyhedra.radius = %g m is not below half of the mean grain size (%g m): nothing "
                  "would be left of the grains; a tenth of the grain size is usual",
                  p->radius, mean);
-    if (p->evaluation == POLY_CONDENSED && p->features != POLY_MERGED)
+    if (p->evaluation == POLY_CONDENSED && p->features == POLY_CLOSED)
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
-            "polyhedra.evaluation = condensed is for polyhedra.features = merged alone: forces of "
-            "the other rules jump; auto and literal are for all");
+            "polyhedra.evaluation = condensed is not for polyhedra.features = closed, whose set of "
+            "springs changes all the time; auto and literal are for all");
     return 0;
 }
 

@@ -37,6 +37,7 @@ static void add_known(struct poly_block *block, int32_t i, size_t p, const struc
     to->delta[lane] = t->delta;
     to->weight[lane] = t->weight;
     to->fades[lane] = 0;
+    to->lasts[lane] = t->delta;
     for (int m = 0; m < 3; m++) {
         to->n[m][lane] = t->n[m];
         to->x[m][lane] = t->x[m];

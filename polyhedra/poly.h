@@ -44,8 +44,8 @@
            "physical contact once, with a continuous force")                                      \
     CHOICE(evaluation, "auto|literal|condensed", "auto",                                          \
            "bond and springs of a pair: each at each step; or, while the same ones act, their "   \
-           "sum, linear in the motion since all were computed; auto: condensed under merged "     \
-           "without viscosity")                                                                   \
+           "sum, linear in the motion since all were computed; auto: condensed where features "   \
+           "are not closed, without viscosity")                                                   \
     REAL(condensed_path, "1", "0.005", "(0, 0.05]",                                               \
          "condensed: relative path, in radii R, until all are computed anew")
 
@@ -164,7 +164,7 @@ static inline bool poly_is_viscous(const struct brc_sim *sim)
 static inline bool poly_is_condensed(const struct brc_sim *sim)
 {
     const struct poly_params *p = poly_params_of(sim);
-    return BRC_OPTION(p->evaluation != POLY_LITERAL && p->features == POLY_MERGED &&
+    return BRC_OPTION(p->evaluation != POLY_LITERAL && p->features != POLY_CLOSED &&
                       !poly_is_viscous(sim));
 }
 

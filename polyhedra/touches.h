@@ -184,8 +184,8 @@ BRC_LANES_INLINE void touch_vertices(struct poly_touches *t, const struct poly_b
         foot_on_plane(&s, out, block, v, item);
     else
         foot_on_edge(&s, out, block, v, item);
-    t->delta = block->rest - s; /* eq:gt12:5 */
-    scale(t->n, out, sign);     /* eq:gt12:3 */
+    t->delta = t->lasts = block->rest - s; /* eq:gt12:5 */
+    scale(t->n, out, sign);                /* eq:gt12:3 */
     for (int k = 0; k < 3; k++)
         t->x[k] = v[k] - 0.5 * s * out[k];
     full_weight(t);
@@ -284,6 +284,18 @@ BRC_LANES_INLINE brc_lanes path_to_inside(const struct crossings *x, brc_lanes r
     return brc_lanes_max(path, path_to_end(x, x->lb, 1, -x->rb, -x->ra, x->la, reach, skin));
 }
 
+/* Relative path for which both feet surely stay inside their edges. By a shift of s a foot moves by
+ * s / sin, by a turn of s / reach by the distance over sin^2 times that; twice as much while the
+ * sine changes by a quarter at most. */
+BRC_LANES_INLINE brc_lanes path_inside(const struct crossings *x, brc_lanes reach, brc_lanes d)
+{
+    brc_lanes sine = brc_lanes_sqrt(x->sin2);
+    brc_lanes far =
+        brc_lanes_min(brc_lanes_min(x->ta, x->la - x->ta), brc_lanes_min(x->tb, x->lb - x->tb));
+    brc_lanes path = 0.5 * far * reach * x->sin2 / (sine * reach + brc_lanes_abs(d));
+    return brc_lanes_min(path, 0.25 * sine * reach);
+}
+
 /* poly_crossing_weight */
 BRC_LANES_INLINE void weigh_crossing(struct poly_touches *t, const struct crossings *x, double ell,
                                      brc_lanes d)
@@ -321,6 +333,7 @@ BRC_LANES_INLINE brc_mask touch_lines(struct poly_touches *t, const struct poly_
     d *= *side;
     scale(t->n, x.m, root_m * *side); /* eq:gt12:3 */
     t->delta = block->rest - d;       /* eq:gt12:5 */
+    t->lasts = merged ? t->delta : brc_lanes_min(t->delta, path_inside(&x, reach, d));
     for (int k = 0; k < 3; k++)
         t->x[k] = p[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
     full_weight(t);
@@ -331,7 +344,8 @@ BRC_LANES_INLINE brc_mask touch_lines(struct poly_touches *t, const struct poly_
         brc_lanes free = path_to_inside(&x, reach, block->skin);
         brc_lanes path = brc_lanes_max(gap_of_edges(&x) - block->rest, free);
         t->delta = brc_lanes_pick(touches, t->delta, -path);
-        t->fades = positive(free);
+        if (merged)
+            t->fades = positive(free);
     }
     return touches;
 }

@@ -85,7 +85,8 @@ static void begin_duel(struct fixture *f, struct duel *d, const char *rule)
         twin_core_from(&d->now[i], &core);
     }
     fixture_loose(f, cell, NULL, 2);
-    snprintf(settings, sizeof settings, "radius: 1 mm; mu: 0; gn: 0 1/s; features: %s", rule);
+    snprintf(settings, sizeof settings,
+             "radius: 1 mm; mu: 0; gn: 0 1/s; evaluation: literal; features: %s", rule);
     fixture_free_sim(f, brc_registry_find("polyhedra"), settings, "dt: 1e-9 s");
     for (int i = 0; i < 2; i++)
         brc_convex_free(&cell[i]);
