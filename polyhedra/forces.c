@@ -3,10 +3,6 @@
  * be computed goes into work lists, and kernels.c does it four at a time. */
 #include "step.h"
 
-/* A row is condensed when that is for this many steps or more: to find its tangent costs as much as
- * a step. */
-static const double CONDENSE = 3;
-
 void poly_world(const struct brc_sim *sim, const struct poly_state *st)
 {
     for (size_t i = 0; i < sim->bodies.n; i++)
@@ -51,19 +47,6 @@ void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, s
     }
 }
 
-/* Where rows may be condensed, the works of bonds are not booked by themselves: what the bond of a
- * row has gained since it was computed last is part of the work of all that acts. */
-static void account_bond(struct brc_sim *sim, size_t row, double stored)
-{
-    const struct poly_rows *rows = sim->pairs.model_columns;
-    double gained = stored - rows->shift[row][POLY_SHIFT_STORED];
-    rows->shift[row][POLY_SHIFT_STORED] = stored;
-    if (!BRC_OPTION(sim->run.ledger))
-        return;
-    sim->ledger.bond += gained;
-    sim->ledger.contact_normal -= gained;
-}
-
 /* A broken bond: its force is gone at once. What it had stored, less the work that its last force
  * would have done in this step, is dissipated. */
 __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size_t row,
@@ -87,7 +70,7 @@ __attribute__((noinline, cold)) static void break_bond(struct brc_sim *sim, size
     c->status[row] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);
     if (poly_is_condensed(sim))
-        account_bond(sim, row, event.energy);
+        poly_account_bond(sim, row, event.energy);
     if (BRC_OPTION(sim->run.ledger)) {
         sim->ledger.damage += event.energy;
         sim->ledger.bond -= event.energy;
@@ -212,129 +195,6 @@ static int prepare_row(struct poly_block *block, int32_t i)
     return 0;
 }
 
-/* Adds force and moment of a bond, and its slope, to what is carried along. */
-static void hold_bond(const struct poly_block *block, int32_t i, double held[6],
-                      double (*tangent)[6])
-{
-    const struct brc_sim *sim = block->sim;
-    const struct poly_params *p = poly_params_of(sim);
-    size_t row = (size_t)block->row[i];
-    struct poly_bond bond = poly_bond_of(p, sim->pairs.model_columns, row);
-    struct poly_bond_pose pose;
-    struct poly_bond_result r;
-    double arm[3], moment[3];
-    poly_pose_bond(&pose, &sim->pairs, row, block->st, &sim->bodies, p->torsion);
-    poly_bond_law(&r, &bond, &pose, p->torsion);
-    brc_sub(arm, r.x, sim->bodies.x[block->a[i]]);
-    brc_cross(moment, arm, r.f);
-    for (int k = 0; k < 3; k++) {
-        held[k] += r.f[k];
-        held[3 + k] += moment[k] + r.m * r.n[k];
-    }
-    double kn = r.term[0] > 0 ? bond.kn : 0;
-    for (int j = 0; j < 6; j++) {
-        double unit[3] = {j % 3 == 0, j % 3 == 1, j % 3 == 2}, d[3], f[3];
-        if (j < 3)
-            brc_copy(d, unit);
-        else
-            brc_cross(d, unit, arm);
-        double along = brc_dot(d, r.n);
-        for (int k = 0; k < 3; k++)
-            f[k] = kn * along * r.n[k] + bond.kt * (d[k] - along * r.n[k]);
-        brc_cross(moment, arm, f);
-        for (int k = 0; k < 3; k++) {
-            tangent[j][k] += f[k];
-            tangent[j][3 + k] += moment[k];
-            if (j >= 3)
-                tangent[j][3 + k] += bond.ktheta * r.n[j - 3] * r.n[k];
-        }
-    }
-}
-
-/* Relative path for which no point that sleeps can touch, `most` at most. That is also one for
- * which no vertex of `strict` leaves its face, since one of its edges comes or goes across the
- * face's then. */
-static double path_of_sleepers(const struct brc_contacts *c, size_t row, double most)
-{
-    const struct poly_rows *rows = c->model_columns;
-    const struct poly_points *points = c->point_columns;
-    size_t p = (size_t)c->p0[row] + (size_t)rows->awake[row];
-    size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
-    double room = rows->room[row];
-    most = poly_least(most, room);
-    for (; p < end && room - points->sleep[p] < most; p++)
-        if (points->kind[p] != POLY_EDGES || points->hold[p] != POLY_FADES)
-            return room - points->sleep[p];
-    return most;
-}
-
-/* Relative path for which a row may be condensed, if its springs do. */
-static double path_left(const struct poly_block *block, int32_t i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    double most = p->condensed_path * p->radius;
-    if (block->listed[i])
-        return path_of_sleepers(&block->sim->pairs, (size_t)block->row[i], most);
-    return poly_least(block->group[i / BRC_LANES].gap[i % BRC_LANES], most);
-}
-
-/* Decides whether a row may be condensed: then its tangent is found with its forces. */
-static void begin_tangent(struct poly_block *block, int32_t i)
-{
-    const struct poly_rows *rows = block->sim->pairs.model_columns;
-    bool is_whole = !block->listed[i] || rows->ready[block->row[i]];
-    block->steady[i] = is_whole && path_left(block, i) >=
-                                       CONDENSE * block->group[i / BRC_LANES].path[i % BRC_LANES];
-    if (block->steady[i])
-        memset(block->tangent[i], 0, sizeof block->tangent[i]);
-}
-
-/* Relative path of a row before its bond can break, or begin or end to pull: openings change by
- * twice the path at most, strains by that over the strain length, the twist by the path over the
- * reach of b. */
-static double path_of_bond(const struct poly_block *block, int32_t i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    const struct poly_rows *rows = block->sim->pairs.model_columns;
-    const struct poly_row_group *g = &block->group[i / BRC_LANES];
-    double length = *poly_bond_length(rows, (size_t)block->row[i]);
-    double slope = 2 / (length * p->eps_th), path = 0.5 * fabs(g->opening[i % BRC_LANES]);
-    if (p->torsion && p->theta_limit)
-        slope += 1 / (block->sim->bodies.reach[block->b[i]] * p->theta_th);
-    return p->breakable ? poly_least(path, (1 - g->broken[i % BRC_LANES]) / slope) : path;
-}
-
-/* A row that has been computed literally, and whose springs all touch, is condensed until it has
- * moved by the path for which they stay what they are. */
-static void condense_row(struct poly_block *block, int32_t i)
-{
-    struct brc_sim *sim = block->sim;
-    const struct poly_rows *rows = sim->pairs.model_columns;
-    const struct poly_row_group *g = &block->group[i / BRC_LANES];
-    size_t row = (size_t)block->row[i];
-    bool is_intact = sim->pairs.status[row] == BRC_INTACT;
-    int lane = i % BRC_LANES;
-    double *shift = rows->shift[row], stored = is_intact ? g->bond_stored[lane] : 0;
-    if (is_intact)
-        account_bond(sim, row, stored);
-    memset(shift, 0, sizeof rows->shift[row]);
-    shift[POLY_SHIFT_STORED] = stored;
-    if (!block->steady[i] || block->open[i])
-        return;
-    double end = poly_least(block->lasting[i], path_left(block, i));
-    if (is_intact)
-        end = poly_least(end, path_of_bond(block, i));
-    if (end < CONDENSE * g->path[lane])
-        return;
-    shift[POLY_SHIFT_END] = end;
-    rows->carried[row] = 1;
-    for (int k = 0; k < 6; k++)
-        rows->held[row][k] = block->sum[i][POLY_SUM_NORMAL + k] + block->sum[i][POLY_SUM_SHEAR + k];
-    memcpy(rows->tangent[row], block->tangent[i], sizeof rows->tangent[row]);
-    if (is_intact)
-        hold_bond(block, i, rows->held[row], (double(*)[6])rows->tangent[row]);
-}
-
 /* Stiffness of row i of the block; works into the ledger. */
 static void store_row(struct poly_block *block, int32_t i)
 {
@@ -399,7 +259,7 @@ void poly_forces(struct brc_sim *sim, void *state)
         for (int32_t i = 0; i < block->n_rows; i++) {
             poly_list_points(block, i);
             if (condensed)
-                begin_tangent(block, i);
+                poly_begin_tangent(block, i);
         }
         fetch_points(block);
         poly_work_off(block);
@@ -407,7 +267,7 @@ void poly_forces(struct brc_sim *sim, void *state)
         for (int32_t i = 0; i < block->n_rows; i++) {
             store_row(block, i);
             if (condensed)
-                condense_row(block, i);
+                poly_condense_row(block, i);
         }
     }
 }

@@ -194,6 +194,16 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
 void poly_list_points(struct poly_block *block, int32_t i);
 void poly_work_off(struct poly_block *block);
 
+/* condensed.c. Decides whether row i of the block may be condensed: then its tangent is found with
+ * its forces. */
+void poly_begin_tangent(struct poly_block *block, int32_t i);
+/* A row that has been computed literally, and whose springs all touch, is condensed until it has
+ * moved by the path for which they stay what they are. */
+void poly_condense_row(struct poly_block *block, int32_t i);
+/* Where rows may be condensed, the works of bonds are not booked by themselves: what the bond of a
+ * row has gained since it was computed last is part of the work of all that acts. */
+void poly_account_bond(struct brc_sim *sim, size_t row, double stored);
+
 /* forces.c, walls.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);
 void poly_walls(struct brc_sim *sim, void *state);
