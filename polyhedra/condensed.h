@@ -55,6 +55,13 @@ BRC_LANES_INLINE brc_lanes work_of_rows(const struct brc_contacts *c, const stru
     return -0.5 * dt * (brc_lanes_dot(f, u) + brc_lanes_dot(m, dw) + last);
 }
 
+/* Where the pairs have turned too far, as a whole, for the first order of the turn. */
+BRC_LANES_INLINE brc_mask turns_far(const struct poly_block *block, const struct shifts *s)
+{
+    double most = 0.5 * poly_params_of(block->sim)->condensed_path;
+    return brc_lanes_less(brc_lanes_all(most * most), brc_lanes_dot(s->both, s->both));
+}
+
 /* Moves four rows by a step. Returns how many of them are left to do: where some have used up their
  * path, none is moved, and the others come first in i. */
 BRC_LANES_INLINE int carry_four(struct poly_block *block, struct numbers *i, int n,
@@ -74,7 +81,7 @@ BRC_LANES_INLINE int carry_four(struct poly_block *block, struct numbers *i, int
     motion_of_group(block, &g, &f, i);
     gather_shifts(&s, rows, i->row);
     add_shifts(&s, &f, &g, block->sim->dt);
-    brc_mask stays = brc_lanes_less(s.path, s.end);
+    brc_mask stays = brc_lanes_less(s.path, s.end) & ~turns_far(block, &s);
     if (brc_lanes_any(~stays)) {
         int left = 0;
         for (int k = 0; k < n; k++) {

@@ -183,6 +183,25 @@ static double list_point(struct poly_block *block, int32_t i, size_t p, double r
     return points->hold[p];
 }
 
+/* The spring of a point that has come apart is released. Where rows may be condensed, the work of
+ * its last force is part of the work of all that acts. */
+static void release_spring(struct poly_block *block, int32_t i, size_t p)
+{
+    struct brc_sim *sim = block->sim;
+    const struct poly_points *points = sim->pairs.point_columns;
+    struct poly_spring_law law = poly_pair_law(sim);
+    struct brc_ledger released = {0};
+    struct poly_motion m;
+    poly_start_motion(&m, sim, block->a[i], block->b[i]);
+    poly_release(&released, &law, &m, poly_xi(points, p), *poly_weight(points, p));
+    if (!BRC_OPTION(sim->run.ledger))
+        return;
+    sim->ledger.contact_shear += released.contact_shear;
+    sim->ledger.friction += released.friction;
+    if (poly_is_condensed(sim))
+        sim->ledger.contact_normal -= released.contact_shear + released.friction;
+}
+
 /* A point that does not touch: its spring is released, and it goes to sleep when the path that it
  * is free for is worth it. */
 static void come_apart(struct poly_block *block, const struct poly_apart *apart)
@@ -194,12 +213,8 @@ static void come_apart(struct poly_block *block, const struct poly_apart *apart)
     struct poly_points *points = sim->pairs.point_columns;
     struct poly_spring_law law = poly_pair_law(sim);
     size_t row = (size_t)block->row[i];
-    if (*poly_weight(points, p) > 0 && law.mu > 0 && law.kt > 0) {
-        struct poly_motion m;
-        poly_start_motion(&m, sim, block->a[i], block->b[i]);
-        poly_release(BRC_OPTION(sim->run.ledger) ? &sim->ledger : NULL, &law, &m,
-                     poly_xi(points, p), *poly_weight(points, p));
-    }
+    if (*poly_weight(points, p) > 0 && law.mu > 0 && law.kt > 0)
+        release_spring(block, i, p);
     *poly_weight(points, p) = 0;
     points->active[p] = 0;
     if (points->kind[p] == POLY_EDGES) {

@@ -45,7 +45,7 @@
     CHOICE(evaluation, "auto|literal|condensed", "auto",                                          \
            "bond and springs of a pair: each at each step; or, while the same ones act, their "   \
            "sum, linear in the motion since all were computed; auto: condensed where features "   \
-           "are not closed, without viscosity")                                                   \
+           "are not closed, in the quasi-static regime")                                          \
     REAL(condensed_path, "1", "0.005", "(0, 0.05]",                                               \
          "condensed: relative path, in radii R, until all are computed anew")
 
@@ -164,8 +164,8 @@ static inline bool poly_is_viscous(const struct brc_sim *sim)
 static inline bool poly_is_condensed(const struct brc_sim *sim)
 {
     const struct poly_params *p = poly_params_of(sim);
-    return BRC_OPTION(p->evaluation != POLY_LITERAL && p->features != POLY_CLOSED &&
-                      !poly_is_viscous(sim));
+    bool is_fit = sim->run.regime != BRC_DYNAMIC && p->features != POLY_CLOSED;
+    return BRC_OPTION(p->evaluation == POLY_CONDENSED || (p->evaluation == POLY_AUTO && is_fit));
 }
 
 /* Smaller one of the radii of two cores about their centres. */

@@ -244,13 +244,13 @@ static void listing(struct brc_context *ctx, const struct brc_specimen *specimen
     brc_sim_free(&sim);
 }
 
-static void dodecahedra(void)
+static void dodecahedra(const char *evaluation, const char *name)
 {
     static struct dodecahedra d;
     static struct brc_convex cell[512];
     struct brc_plane planes[20], placed[12];
     struct bench_times t = {.n = 0};
-    char settings[128];
+    char settings[160];
     void *state;
     fixture_open(&state);
     struct fixture *f = state;
@@ -262,11 +262,12 @@ static void dodecahedra(void)
         must(&f->ctx, brc_convex_from_planes(&f->ctx, &cell[i], placed, 12, d.x[i], 2));
     }
     fixture_loose(f, cell, NULL, 512);
-    snprintf(settings, sizeof settings, "radius: %.17g m; features: strict; gn: 0 1/s", d.radius);
+    snprintf(settings, sizeof settings,
+             "radius: %.17g m; features: strict; gn: 0 1/s; evaluation: %s", d.radius, evaluation);
     fixture_free_sim(f, &brc_model_polyhedra, settings, "dt: 1e-9 s");
     for (int i = 0; i < 10 * REPEATS; i++)
         bench_note(&t, step_seconds(&f->sim));
-    report_steps(&t, &f->sim, "polyhedra_dodecahedra_512_ms_step", 0.25);
+    report_steps(&t, &f->sim, name, 0.25);
     for (size_t i = 0; i < 512; i++)
         brc_convex_free(&cell[i]);
     fixture_close(&state);
@@ -293,7 +294,8 @@ int main(void)
     breaking(&ctx, &specimen);
     listing(&ctx, &specimen, strong_bonds, "1e-5 1/s", "polyhedra_list_share_calm");
     listing(&ctx, &specimen, weak_bonds, "1.5e-5 1/s", "polyhedra_list_share");
-    dodecahedra();
+    dodecahedra("condensed", "polyhedra_dodecahedra_512_ms_step");
+    dodecahedra("literal", "polyhedra_dodecahedra_literal_512_ms_step");
     brc_specimen_free(&specimen);
     return 0;
 }
