@@ -194,7 +194,7 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
 void poly_list_points(struct poly_block *block, int32_t i);
 void poly_work_off(struct poly_block *block);
 
-/* condensed.c. Decides whether row i of the block may be condensed: then its tangent is found with
+/* condense.c. Decides whether row i of the block may be condensed: then its tangent is found with
  * its forces. */
 void poly_begin_tangent(struct poly_block *block, int32_t i);
 /* A row that has been computed literally, and whose springs all touch, is condensed until it has
