@@ -2,7 +2,6 @@
 #include "rig.h"
 
 #include "lanes.h"
-
 #include "sim.h"
 #include "vec.h"
 

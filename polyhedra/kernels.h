@@ -444,22 +444,18 @@ KERNEL(finish_condensed, finish_kernel(block, false, false, true))
 KERNEL(finish_condensed_ledger, finish_kernel(block, true, false, true))
 KERNEL(carry, carry_kernel(block, false))
 KERNEL(carry_ledger, carry_kernel(block, true))
-#define POINTS(name, ...)                                                  \
-    KERNEL(points_##name, points_kernel(block, false, false, __VA_ARGS__)) \
-    KERNEL(merged_##name, points_kernel(block, true, false, __VA_ARGS__))
-POINTS(plain, false, false, false)
-POINTS(viscous, false, true, false)
-POINTS(rub, true, false, false)
-POINTS(rub_ledger, true, false, true)
-POINTS(rub_viscous, true, true, false)
-POINTS(rub_viscous_ledger, true, true, true)
-#undef POINTS
-#define POINTS(name, ...)                                                           \
-    KERNEL(condensed_points_##name, points_kernel(block, false, true, __VA_ARGS__)) \
-    KERNEL(condensed_merged_##name, points_kernel(block, true, true, __VA_ARGS__))
-POINTS(plain, false, false, false)
-POINTS(rub, true, false, false)
-POINTS(rub_ledger, true, false, true)
+#define POINTS(name, ...)                                           \
+    KERNEL(points_##name, points_kernel(block, false, __VA_ARGS__)) \
+    KERNEL(merged_##name, points_kernel(block, true, __VA_ARGS__))
+POINTS(plain, false, false, false, false)
+POINTS(viscous, false, false, true, false)
+POINTS(rub, false, true, false, false)
+POINTS(rub_ledger, false, true, false, true)
+POINTS(rub_viscous, false, true, true, false)
+POINTS(rub_viscous_ledger, false, true, true, true)
+POINTS(condensed, true, false, false, false)
+POINTS(condensed_rub, true, true, false, false)
+POINTS(condensed_rub_ledger, true, true, false, true)
 #undef POINTS
 #undef KERNEL
 
@@ -478,10 +474,9 @@ __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_li
 static struct poly_kernels choose_condensed(const struct poly_params *p, bool friction, bool ledger)
 {
     static poly_kernel *const points[2][2][2] = {
-        {{condensed_points_plain, condensed_points_plain},
-         {condensed_points_rub, condensed_points_rub_ledger}},
-        {{condensed_merged_plain, condensed_merged_plain},
-         {condensed_merged_rub, condensed_merged_rub_ledger}}};
+        {{points_condensed, points_condensed}, {points_condensed_rub, points_condensed_rub_ledger}},
+        {{merged_condensed, merged_condensed},
+         {merged_condensed_rub, merged_condensed_rub_ledger}}};
     bool merged = p->features == POLY_MERGED;
     return (struct poly_kernels){.world = world,
                                  .list = list,
