@@ -73,26 +73,6 @@ static double path_of_sleepers(const struct brc_contacts *c, size_t row, double 
     return most;
 }
 
-/* Relative path for which a row may be condensed, if its springs do. */
-static double path_left(const struct poly_block *block, int32_t i)
-{
-    const struct poly_params *p = poly_params_of(block->sim);
-    double most = p->condensed_path * p->radius;
-    if (block->listed[i])
-        return path_of_sleepers(&block->sim->pairs, (size_t)block->row[i], most);
-    return poly_least(block->group[i / BRC_LANES].gap[i % BRC_LANES], most);
-}
-
-void poly_begin_tangent(struct poly_block *block, int32_t i)
-{
-    const struct poly_rows *rows = block->sim->pairs.model_columns;
-    bool is_whole = !block->listed[i] || rows->ready[block->row[i]];
-    block->steady[i] = is_whole && path_left(block, i) >=
-                                       CONDENSE * block->group[i / BRC_LANES].path[i % BRC_LANES];
-    if (block->steady[i])
-        memset(block->tangent[i], 0, sizeof block->tangent[i]);
-}
-
 /* Relative path of a row before its bond can break, or begin or end to pull: openings change by
  * twice the path at most, strains by that over the strain length, the twist by the path over the
  * reach of b. */
@@ -108,15 +88,43 @@ static double path_of_bond(const struct poly_block *block, int32_t i)
     return p->breakable ? poly_least(path, (1 - g->broken[i % BRC_LANES]) / slope) : path;
 }
 
+/* Relative path for which a row may be condensed, as far as its acting springs do not matter. */
+static double path_left(const struct poly_block *block, int32_t i)
+{
+    const struct poly_params *p = poly_params_of(block->sim);
+    const struct brc_contacts *c = &block->sim->pairs;
+    size_t row = (size_t)block->row[i];
+    double most = p->condensed_path * p->radius;
+    if (c->status[row] == BRC_INTACT)
+        most = poly_least(most, path_of_bond(block, i));
+    if (block->listed[i])
+        return path_of_sleepers(c, row, most);
+    return poly_least(block->group[i / BRC_LANES].gap[i % BRC_LANES], most);
+}
+
+/* Whether a path is worth it. What rests and may not move at all is not. */
+static bool is_long(const struct poly_block *block, int32_t i, double path)
+{
+    return path > CONDENSE * block->group[i / BRC_LANES].path[i % BRC_LANES];
+}
+
+void poly_begin_tangent(struct poly_block *block, int32_t i)
+{
+    const struct poly_rows *rows = block->sim->pairs.model_columns;
+    bool is_whole = !block->listed[i] || rows->ready[block->row[i]];
+    block->steady[i] = is_whole && is_long(block, i, path_left(block, i));
+    if (block->steady[i])
+        memset(block->tangent[i], 0, sizeof block->tangent[i]);
+}
+
 void poly_condense_row(struct poly_block *block, int32_t i)
 {
     struct brc_sim *sim = block->sim;
     const struct poly_rows *rows = sim->pairs.model_columns;
-    const struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     bool is_intact = sim->pairs.status[row] == BRC_INTACT;
-    int lane = i % BRC_LANES;
-    double *shift = rows->shift[row], stored = is_intact ? g->bond_stored[lane] : 0;
+    double *shift = rows->shift[row];
+    double stored = is_intact ? block->group[i / BRC_LANES].bond_stored[i % BRC_LANES] : 0;
     if (is_intact)
         poly_account_bond(sim, row, stored);
     memset(shift, 0, sizeof rows->shift[row]);
@@ -124,9 +132,7 @@ void poly_condense_row(struct poly_block *block, int32_t i)
     if (!block->steady[i] || block->open[i])
         return;
     double end = poly_least(block->lasting[i], path_left(block, i));
-    if (is_intact)
-        end = poly_least(end, path_of_bond(block, i));
-    if (end < CONDENSE * g->path[lane])
+    if (!is_long(block, i, end))
         return;
     shift[POLY_SHIFT_END] = end;
     rows->carried[row] = 1;
