@@ -100,7 +100,7 @@ static void put_curve(FILE *out, const struct brc_converge_report *r, int model,
 {
     const struct brc_converge_setting *s = r->row[first].setting;
     bool is_ladder = s->role == BRC_CONVERGE_LADDER;
-    char name[24];
+    char name[32];
     snprintf(name, sizeof name, "$axis_%d_%d", model, axis);
     fprintf(out, "  %s using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '%s' notitle, \\\n", name,
             colour(axis));

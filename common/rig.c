@@ -126,32 +126,30 @@ void brc_rig_free(struct brc_sim *sim)
 }
 
 /* Sum of the sizes of n forces; *active is how many of them act. */
-static double sum_of_sizes(double (*f)[3], size_t n, size_t *active)
+static double sum_of_sizes(double (*f)[3], size_t n, double *active)
 {
-    double sum = 0;
-    *active = 0;
+    brc_lanes sum = brc_lanes_all(0), acting = brc_lanes_all(0), one = brc_lanes_all(1), v[3];
     for (size_t i = 0; i < n; i += BRC_LANES) { /* rows past the last are room */
-        brc_lanes v[3];
         brc_lanes_at3(v, f + i);
         brc_lanes size = brc_lanes_sqrt(brc_lanes_dot(v, v));
-        for (size_t k = 0; k < BRC_LANES && i + k < n; k++) {
-            sum += size[k];
-            *active += size[k] > 0;
-        }
+        size = brc_lanes_where(brc_lanes_first((int64_t)(n - i)), size);
+        sum += size;
+        acting += brc_lanes_where(brc_lanes_less(brc_lanes_all(0), size), one);
     }
-    return sum;
+    *active = brc_lanes_sum(acting);
+    return brc_lanes_sum(sum);
 }
 
 /* Mean unbalanced force on a grain over mean contact force. */
 static double unbalanced_ratio(const struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
-    size_t acting, active;
+    double acting, active;
     double unbalanced = sum_of_sizes(b->f, b->n_grains, &acting);
     double contact = sum_of_sizes(sim->pairs.f, sim->pairs.n, &active);
     if (contact <= 0)
         return 0;
-    return unbalanced / (double)b->n_grains / (contact / (double)active);
+    return unbalanced / (double)b->n_grains / (contact / active);
 }
 
 /* The start is over when the field of velocities is that of steady loading. */

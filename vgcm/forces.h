@@ -43,12 +43,13 @@ VGCM_INLINE brc_mask affine_fails(const struct loop *l, const struct four *x)
     brc_lanes kn = vgcm_at(l->f->kn, &x->rows), ks = law->eta * kn, range[2];
     brc_lanes rim = vgcm_at(l->f->rim, &x->rows);
     openings_of(range, u, rim);
-    brc_lanes pull = kn * range[1];
+    brc_lanes pull = kn * range[1], room = law->sigma_t - kn * u[VGCM_OPEN], reach = kn * rim;
+    brc_lanes bend2 = u[VGCM_BEND_S] * u[VGCM_BEND_S] + u[VGCM_BEND_T] * u[VGCM_BEND_T];
     brc_lanes left = law->tau - law->mu * pull - ks * rim * brc_lanes_abs(u[VGCM_TWIST]);
     brc_lanes slip2 = ks * ks * (u[VGCM_S] * u[VGCM_S] + u[VGCM_T] * u[VGCM_T]);
-    brc_mask fails =
-        x->live & (brc_lanes_less(brc_lanes_all(law->sigma_t), pull) |
-                   brc_lanes_less(left, brc_lanes_all(0)) | brc_lanes_less(left * left, slip2));
+    brc_mask fails = x->live & (brc_lanes_less(brc_lanes_min(room, left), brc_lanes_all(0)) |
+                                brc_lanes_less(room * room, reach * reach * bend2) |
+                                brc_lanes_less(left * left, slip2));
     if (!brc_lanes_any(fails))
         return fails;
     for (int k = 0; k < BRC_LANES; k++) {
@@ -282,9 +283,10 @@ LOOP(6)
 LOOP(7)
 #undef LOOP
 
-#define VGCM_FORCES_LOOPS                                                              \
-    {                                                                                  \
-        forces_0, forces_1, forces_2, forces_3, forces_4, forces_5, forces_6, forces_7 \
+#define VGCM_LOOPS                                                                        \
+    {                                                                                     \
+        {forces_0, forces_1, forces_2, forces_3, forces_4, forces_5, forces_6, forces_7}, \
+            walls_loop                                                                    \
     }
 
 #endif

@@ -79,6 +79,11 @@ struct vgcm_point_lanes {
     brc_mask loose;           /* were broken and open before the step */
 };
 
+/* The same for points without a bond: opening, normal force, shear force on b. */
+struct vgcm_rub_lanes {
+    brc_lanes un, pull, s, t; /* m */
+};
+
 /* What is added up over steps [J]. */
 struct vgcm_energy_lanes {
     brc_lanes bond, normal, shear, damage, friction;
@@ -340,24 +345,42 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
     e->friction += sum.friction[0];
 }
 
-/* One step of one broken point: it pushes and rubs. */
+/* Points that are broken from the start: they push and rub. un: after the step. */
+VGCM_INLINE void vgcm_lanes_rub(const struct vgcm_bond *bond, brc_lanes area, const brc_lanes du[3],
+                                struct vgcm_rub_lanes *q, struct vgcm_energy_lanes *e)
+{
+    brc_lanes none = brc_lanes_all(0), un_old = q->un - du[0], s_old = q->s, t_old = q->t;
+    brc_lanes s = s_old - du[1], t = t_old - du[2], force2 = s * s + t * t;
+    q->pull = brc_lanes_min(q->un, none);
+    brc_lanes limit = vgcm_lanes_limit(bond->law, none, q->pull, none);
+    brc_mask cut = brc_lanes_less(limit * limit, force2);
+    brc_lanes part = brc_lanes_pick(cut, limit / brc_lanes_sqrt(force2), brc_lanes_all(1));
+    q->s = part * s;
+    q->t = part * t;
+    brc_lanes half_kn = 0.5 * bond->kn * area, half_ks = 0.5 * bond->ks * area;
+    e->normal += half_kn * ((brc_lanes_min(un_old, none) + q->pull) * du[0]);
+    e->shear += half_ks * (part * part * force2 - (s_old * s_old + t_old * t_old));
+    e->friction += half_ks * ((1 - part) * (s_old * s + t_old * t + part * force2));
+}
+
+/* One of them alone. */
 static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const double du[3],
                                 struct vgcm_point *p, struct vgcm_energy *e)
 {
     double kn = bond->kn * area, ks = bond->ks * area, inv = bond->per_ks / area;
-    double fn_old = p->un < 0 ? kn * p->un : 0, s_old = p->fs, t_old = p->ft;
-    double s = s_old - ks * du[1], t = t_old - ks * du[2];
-    p->un += du[0];
-    p->fn = p->un < 0 ? kn * p->un : 0;
-    double limit = -bond->law->mu * p->fn, force2 = s * s + t * t;
-    double part = 1;
-    if (limit * limit < force2)
-        part = limit > 0 ? limit / sqrt(force2) : 0;
-    p->fs = part * s;
-    p->ft = part * t;
-    e->normal += 0.5 * (fn_old + p->fn) * du[0];
-    e->shear += 0.5 * inv * (part * part * force2 - (s_old * s_old + t_old * t_old));
-    e->friction += 0.5 * inv * (1 - part) * (s_old * s + t_old * t + part * force2);
+    const brc_lanes all[3] = {brc_lanes_all(du[0]), brc_lanes_all(du[1]), brc_lanes_all(du[2])};
+    struct vgcm_rub_lanes q = {.un = brc_lanes_all(p->un + du[0]),
+                               .s = brc_lanes_all(inv * p->fs),
+                               .t = brc_lanes_all(inv * p->ft)};
+    struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
+    vgcm_lanes_rub(bond, brc_lanes_all(area), all, &q, &sum);
+    p->un = q.un[0];
+    p->fn = kn * q.pull[0];
+    p->fs = ks * q.s[0];
+    p->ft = ks * q.t[0];
+    e->normal += sum.normal[0];
+    e->shear += sum.shear[0];
+    e->friction += sum.friction[0];
 }
 
 /* Normal force of one point [N]. */

@@ -94,6 +94,7 @@ static int create(struct brc_sim *sim, void **state)
         return BRC_ERR_MEMORY;
     vgcm_law_of(&own->law, sim->params);
     sim->pairs.is_busy = is_busy;
+    sim->platens.lanes = BRC_LANES;
     *state = own;
     return 0;
 }
@@ -155,26 +156,26 @@ static void select_loops(struct brc_sim *sim, void *state)
         (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
     switch (brc_simd_of(sim->run.simd)) {
     case BRC_SIMD_AVX512:
-        own->forces = vgcm_forces_avx512[own->flags];
+        own->loops = &vgcm_loops_avx512;
         break;
     case BRC_SIMD_AVX2:
-        own->forces = vgcm_forces_avx2[own->flags];
+        own->loops = &vgcm_loops_avx2;
         break;
     default:
-        own->forces = vgcm_forces_base[own->flags];
+        own->loops = &vgcm_loops_base;
     }
 }
 
 static void forces(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
-    own->forces(sim, &own->law);
+    own->loops->forces[own->flags](sim, &own->law);
 }
 
 static void walls(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
-    vgcm_walls(sim, &own->law, own->flags);
+    own->loops->walls(sim, &own->law, own->flags);
 }
 
 static void energy(const struct brc_sim *sim, const void *state, double stored[3])

@@ -106,9 +106,10 @@ struct vgcm_points {
     VGCM_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
 
+struct vgcm_loops;
 struct vgcm_state {
     struct vgcm_law law;
-    void (*forces)(struct brc_sim *sim, const struct vgcm_law *law);
+    const struct vgcm_loops *loops;
     int flags; /* of law.h */
 };
 
@@ -141,12 +142,13 @@ int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);
 int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
                    const struct brc_candidates *grains, const struct brc_candidates *platens);
 
-/* forces.h: the specialised loops by the flags of law.h, for each instruction set */
-extern void (*const vgcm_forces_base[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
-extern void (*const vgcm_forces_avx2[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
-extern void (*const vgcm_forces_avx512[VGCM_N_LOOPS])(struct brc_sim *, const struct vgcm_law *);
-/* walls.c: few rows, so the flags are looked at as it runs */
-void vgcm_walls(struct brc_sim *sim, const struct vgcm_law *law, int flags);
+/* forces.h and walls.h for each instruction set: the loops over contacts of grains, specialised by
+ * the flags of law.h, and the loop over those with platens */
+struct vgcm_loops {
+    void (*forces[VGCM_N_LOOPS])(struct brc_sim *sim, const struct vgcm_law *law);
+    void (*walls)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
+};
+extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2, vgcm_loops_avx512;
 
 /* energy.c */
 void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3]);
