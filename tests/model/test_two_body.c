@@ -366,6 +366,27 @@ static void vgcm_cell_on_a_platen(void **state)
     check_incline(*state, true, 0, build_cell_on_platen);
 }
 
+/* A cell that leaves its platen is not held back, by the springs nor by what damps them. */
+static void an_open_platen_does_not_pull(void **state)
+{
+    struct fixture *f = *state;
+    const double v[3] = {0.1, 0, 0.2}, zero[3] = {0, 0, 0};
+    fixture_grid(f, 1, 1, 1, 1e-2, 0);
+    fixture_sim(f, vgcm(), "e_bar: 1e7 Pa; eta: 1; mu: 0; interaction: all; viscous: 1e3 1/s",
+                "friction: 0.3; loading: fixed; rate: 1e-15 1/s",
+                "regime: dynamic; dt: 1e-5 s; local_damping: 0");
+    drop_upper_platen(f);
+    fixture_velocity(f, 0, v, zero);
+    fixture_steps(f, 20);
+    assert_true(f->sim.platens.gap[0] > 0);
+    for (int k = 0; k < 3; k++)
+        CHECK_NEAR(f->sim.bodies.v[0][k], v[k], 1e-15, 1e-12);
+    /* the same motion towards it is damped */
+    fixture_velocity(f, 0, (double[3]){0.1, 0, -0.2}, zero);
+    fixture_steps(f, 25);
+    assert_true(f->sim.bodies.v[0][0] < 0.0999 && f->sim.bodies.v[0][2] > -0.1999);
+}
+
 /* The automatic step is below the limit of a contact before the two touch, so that the impact is as
  * elastic as the step makes it. */
 static void the_step_meets_an_impact(void **state)
@@ -400,6 +421,7 @@ int main(void)
         FIXTURE_TEST(block_on_a_slab),
         FIXTURE_TEST(block_on_a_platen),
         FIXTURE_TEST(vgcm_cell_on_a_platen),
+        FIXTURE_TEST(an_open_platen_does_not_pull),
         FIXTURE_TEST(the_step_meets_an_impact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
