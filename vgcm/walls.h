@@ -19,21 +19,20 @@ struct wall {
     const struct brc_platen *platen;
     struct vgcm_law law; /* with the platen's friction */
     struct vgcm_bond bond;
-    struct vgcm_energy_lanes energy;
     double frame[3][3];  /* in space: normal from grain to platen, two axes of its plane */
     double riding[3][3]; /* frame that rides on the grain */
     double move[3];      /* m, of the platen against the grain's centre in this step */
     double turn[3];      /* rad, of the grain in this step */
     double viscosity;    /* viscous force over area and increment */
-    brc_lanes force[6];  /* on the platen, moment about the grain */
-    brc_lanes drag[6];   /* the viscous part of it */
-    brc_lanes gap;       /* m, smallest opening */
     double viscous;      /* J */
+    struct vgcm_energy_lanes energy;
+    brc_lanes force[6]; /* on the platen, moment about the grain */
+    brc_lanes drag[6];  /* the viscous part of it */
+    brc_lanes gap;      /* m, smallest opening */
 };
 
 /* Four points of a row. */
 struct wall_points {
-    size_t j;      /* the first */
     brc_mask live; /* lanes that are points; the others are room, without an area */
     brc_lanes area, r[3], du[3];
     struct vgcm_rub_lanes q;
@@ -107,7 +106,6 @@ VGCM_INLINE void read_points(const struct wall *w, size_t i, size_t j, double ab
     }
     brc_lanes_gather4(at, place);
     brc_lanes_gather4(own, slip);
-    x->j = j;
     x->live = brc_lanes_first((int64_t)((size_t)(w->c->p0[i] + w->c->np[i]) - j));
     x->area = at[VGCM_AREA];
     for (int k = 0; k < 3; k++)
