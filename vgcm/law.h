@@ -350,8 +350,9 @@ VGCM_INLINE void vgcm_lanes_rub(const struct vgcm_bond *bond, brc_lanes area, co
                                 struct vgcm_rub_lanes *q, struct vgcm_energy_lanes *e)
 {
     brc_lanes none = brc_lanes_all(0), un_old = q->un - du[0], s_old = q->s, t_old = q->t;
-    brc_lanes s = s_old - du[1], t = t_old - du[2], force2 = s * s + t * t;
-    q->pull = brc_lanes_min(q->un, none);
+    brc_lanes s = s_old - du[1], t = t_old - du[2]; /* eq:vgcm:16, eq:vgcm:18 */
+    brc_lanes force2 = s * s + t * t;
+    q->pull = brc_lanes_min(q->un, none); /* eq:vgcm:17 */
     brc_lanes limit = vgcm_lanes_limit(bond->law, none, q->pull, none);
     brc_mask cut = brc_lanes_less(limit * limit, force2);
     brc_lanes part = brc_lanes_pick(cut, limit / brc_lanes_sqrt(force2), brc_lanes_all(1));

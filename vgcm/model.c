@@ -94,7 +94,7 @@ static int create(struct brc_sim *sim, void **state)
         return BRC_ERR_MEMORY;
     vgcm_law_of(&own->law, sim->params);
     sim->pairs.is_busy = is_busy;
-    sim->platens.lanes = BRC_LANES;
+    sim->platens.lanes = BRC_LANES; /* walls.h takes so many points of a row at a time */
     *state = own;
     return 0;
 }

@@ -127,11 +127,11 @@ VGCM_INLINE void step_grip(const struct wall *w, struct wall_points *x, struct v
 {
     struct vgcm_rub_lanes *q = &x->q;
     brc_lanes s_old = q->s, t_old = q->t, half = 0.5 * w->bond.kn * x->area;
-    q->pull = q->un;
+    q->pull = q->un; /* eq:vgcm:17 */
     e->normal += half * ((q->un - x->du[0] + q->un) * x->du[0]);
     if (w->platen->grip == BRC_GRIP_AXIAL)
         return;
-    q->s -= x->du[1];
+    q->s -= x->du[1]; /* eq:vgcm:16, eq:vgcm:18 */
     q->t -= x->du[2];
     half = 0.5 * w->bond.ks * x->area;
     e->shear -= half * ((s_old + q->s) * x->du[1] + (t_old + q->t) * x->du[2]);
