@@ -19,7 +19,32 @@ void brc_children_init(struct brc_child *child, int n)
         child[i] = (struct brc_child){.pipe = -1};
 }
 
-/* The child's whole life. It never returns; the parent reads the outcome. */
+static bool write_whole(int file, const void *what, size_t size)
+{
+    for (const char *at = what; size > 0;) {
+        ssize_t n = write(file, at, size);
+        if (n < 0 && errno != EINTR)
+            return false;
+        at += n > 0 ? n : 0;
+        size -= n > 0 ? (size_t)n : 0;
+    }
+    return true;
+}
+
+static bool read_whole(int file, void *what, size_t size)
+{
+    for (char *at = what; size > 0;) {
+        ssize_t n = read(file, at, size);
+        if (n == 0 || (n < 0 && errno != EINTR))
+            return false;
+        at += n > 0 ? n : 0;
+        size -= n > 0 ? (size_t)n : 0;
+    }
+    return true;
+}
+
+/* The child's whole life. It never returns; the parent reads the outcome. The reports end first:
+ * the parent then waits for the outcome, which may be longer than a pipe holds. */
 static void live(const struct brc_context *parent, const struct brc_child *child,
                  const struct brc_child_work *work)
 {
@@ -29,33 +54,43 @@ static void live(const struct brc_context *parent, const struct brc_child *child
     brc_progress_begin_pipe(&progress, child->pipe);
     outcome.code = work->act(&ctx, work->user, &progress, &outcome.summary);
     memcpy(outcome.message, ctx.message, sizeof outcome.message);
-    bool is_told =
-        fwrite(&outcome, sizeof outcome, 1, child->result) == 1 && fflush(child->result) == 0;
-    _exit(is_told ? 0 : 1);
+    close(child->pipe);
+    _exit(write_whole(child->result, &outcome, sizeof outcome) ? 0 : 1);
+}
+
+/* Those of the other children, in a new one. */
+static void close_pipes(const struct brc_child *child, int n)
+{
+    for (int k = 0; k < n; k++)
+        if (child[k].pipe >= 0) {
+            close(child[k].pipe);
+            close(child[k].result);
+        }
 }
 
 int brc_children_start(struct brc_context *ctx, struct brc_child *child, int n, int i,
                        const struct brc_child_work *work)
 {
     struct brc_child *c = &child[i];
-    int ends[2];
-    c->result = tmpfile();
-    if (!c->result || pipe(ends) != 0)
+    int reports[2], result[2];
+    if (pipe(reports) != 0 || pipe(result) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot start a run of %s: %s", c->name, strerror(errno));
     fflush(NULL);
     c->process = fork();
     if (c->process < 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot start a run of %s: %s", c->name, strerror(errno));
     if (c->process == 0) {
-        close(ends[0]);
-        for (int k = 0; k < n; k++)
-            if (child[k].pipe >= 0)
-                close(child[k].pipe);
-        c->pipe = ends[1];
+        close(reports[0]);
+        close(result[0]);
+        close_pipes(child, n);
+        c->pipe = reports[1];
+        c->result = result[1];
         live(ctx, c, work);
     }
-    close(ends[1]);
-    c->pipe = ends[0];
+    close(reports[1]);
+    close(result[1]);
+    c->pipe = reports[0];
+    c->result = result[0];
     return 0;
 }
 
@@ -67,21 +102,18 @@ int brc_children_running(const struct brc_child *child, int n)
     return running;
 }
 
-/* The child has closed its pipe: takes its exit and its outcome. */
+/* The child has closed its pipe of reports: takes its outcome and its exit. */
 static int end_child(struct brc_context *ctx, struct brc_child *c)
 {
     int status;
     close(c->pipe);
     c->pipe = -1;
+    bool is_told = read_whole(c->result, &c->outcome, sizeof c->outcome);
+    close(c->result);
     while (waitpid(c->process, &status, 0) < 0)
         if (errno != EINTR)
             BRC_FAIL(ctx, BRC_ERR_IO, "lost the run of %s: %s", c->name, strerror(errno));
-    rewind(c->result);
-    bool is_told = WIFEXITED(status) && WEXITSTATUS(status) == 0 &&
-                   fread(&c->outcome, sizeof c->outcome, 1, c->result) == 1;
-    fclose(c->result);
-    c->result = NULL;
-    if (is_told)
+    if (is_told && WIFEXITED(status) && WEXITSTATUS(status) == 0)
         return 0;
     c->outcome = (struct brc_outcome){.code = BRC_ERR_INTERNAL};
     if (WIFSIGNALED(status))

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs in forked processes, side by side: each sends reports of its progress and leaves an outcome.
- * They do without MPI, whose start and end in many processes at once may fail; start none before.
- */
+ * They do without MPI, which does not survive a fork; start none before. */
 #ifndef BRC_CHILD_H
 #define BRC_CHILD_H
 
@@ -20,8 +19,8 @@ struct brc_outcome {
 struct brc_child {
     char name[64]; /* for messages */
     pid_t process;
-    int pipe;     /* of reports; -1: it does not run */
-    FILE *result; /* an outcome */
+    int pipe;   /* of reports; -1: it does not run */
+    int result; /* pipe of its outcome, which follows the last report */
     struct brc_outcome outcome;
 };
 

@@ -4,21 +4,19 @@
 #include <mpi.h>
 #include <stdlib.h>
 
-/* One process without mpirun needs neither the helper daemon of a singleton nor a search for
- * network hardware; both together cost 0.3 s. What the user has set stays. */
-static int comm_prepare_single(struct brc_context *ctx)
+/* Only a launcher makes several ranks. Without one nothing needs MPI, and its start would depend on
+ * what one process has no use for: a home folder, room for session files in the temporary folder,
+ * network hardware; many starts at once fail now and then. So that there are several ranks is read
+ * from what launchers tell each process (Open MPI; PMIx: prte, srun; PMI: MPICH, Intel, srun;
+ * MVAPICH). A batch system's own variables (SLURM_*) stand in serial jobs, too. */
+static bool comm_is_launched(void)
 {
-    static const char *const setting[][2] = {
-        {"OMPI_MCA_ess_singleton_isolated", "1"},
-        {"OMPI_MCA_pml", "ob1"},
-        {"OMPI_MCA_btl", "self"},
-    };
-    if (getenv("OMPI_COMM_WORLD_SIZE") != NULL || getenv("PMIX_RANK") != NULL)
-        return 0;
-    for (size_t i = 0; i < sizeof setting / sizeof setting[0]; i++)
-        if (setenv(setting[i][0], setting[i][1], 0) != 0)
-            BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory while setting %s", setting[i][0]);
-    return 0;
+    static const char *const mark[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "PMI_RANK",
+                                       "MV2_COMM_WORLD_SIZE"};
+    for (size_t i = 0; i < sizeof mark / sizeof mark[0]; i++)
+        if (getenv(mark[i]) != NULL)
+            return true;
+    return false;
 }
 
 static bool comm_is_up(void)
@@ -32,14 +30,13 @@ static bool comm_is_up(void)
 int brc_comm_start(struct brc_context *ctx)
 {
     int is_ended = 0;
+    if (!comm_is_up() && !comm_is_launched())
+        return 0;
     MPI_Finalized(&is_ended);
     if (is_ended)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI was ended; it cannot start again in this process");
-    if (!comm_is_up()) {
-        BRC_TRY(comm_prepare_single(ctx));
-        if (MPI_Init(NULL, NULL) != MPI_SUCCESS)
-            BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI did not start");
-    }
+    if (!comm_is_up() && MPI_Init(NULL, NULL) != MPI_SUCCESS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI did not start");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     return 0;
 }

@@ -335,7 +335,7 @@ static int make_specimen(struct brc_context *ctx, const struct brc_job *job,
     return 0;
 }
 
-/* After the signals are held: threads that MPI starts must hold them, too. */
+/* After the signals are held: threads that MPI starts under a launcher must hold them, too. */
 static int start_single(struct brc_context *ctx)
 {
     BRC_TRY(brc_comm_start(ctx));

@@ -4,36 +4,27 @@
 #include "tests/near.h"
 
 #include <stdlib.h>
-#include <time.h>
 
-static double seconds(void)
+static const char *launched(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return getenv("OMPI_COMM_WORLD_SIZE");
 }
 
-static void start_is_quick_and_may_be_repeated(void **state)
+/* test_comm.sh breaks MPI's own settings for one process: a start of MPI would end it here. */
+static void start_may_be_repeated(void **state)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
     (void)state;
     assert_int_equal(brc_comm_size(), 1);
     assert_int_equal(brc_comm_rank(), 0);
-    double begin = seconds();
     CHECK_OK(&ctx, brc_comm_start(&ctx));
-    double took = seconds() - begin;
     CHECK_OK(&ctx, brc_comm_start(&ctx));
-    /* 0.03 s on an idle core, 0.35 s with the daemon of a singleton; several ranks take what the
-     * launcher takes. The bound leaves room for a busy machine. */
-    if (getenv("OMPI_COMM_WORLD_SIZE") == NULL)
-        CHECK_BETWEEN(took, 0, 2.0);
 }
 
 static void ranks_are_those_of_the_launcher(void **state)
 {
-    const char *launched = getenv("OMPI_COMM_WORLD_SIZE");
     (void)state;
-    assert_int_equal(brc_comm_size(), launched ? atoi(launched) : 1);
+    assert_int_equal(brc_comm_size(), launched() ? atoi(launched()) : 1);
     assert_in_range(brc_comm_rank(), 0, brc_comm_size() - 1);
 }
 
@@ -53,23 +44,27 @@ static void sum_is_formed_in_rank_order(void **state)
     CHECK_OK(&ctx, brc_comm_sum(&ctx, NULL, 0));
 }
 
-static void end_is_final(void **state)
+/* MPI cannot start a second time; one process has not started it. */
+static void end_is_final_under_a_launcher(void **state)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
     (void)state;
     brc_comm_end();
     brc_comm_end();
     assert_int_equal(brc_comm_size(), 1);
-    CHECK_FAILS(&ctx, brc_comm_start(&ctx), BRC_ERR_INTERNAL, "cannot start again");
+    if (launched())
+        CHECK_FAILS(&ctx, brc_comm_start(&ctx), BRC_ERR_INTERNAL, "cannot start again");
+    else
+        CHECK_OK(&ctx, brc_comm_start(&ctx));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(start_is_quick_and_may_be_repeated),
+        cmocka_unit_test(start_may_be_repeated),
         cmocka_unit_test(ranks_are_those_of_the_launcher),
         cmocka_unit_test(sum_is_formed_in_rank_order),
-        cmocka_unit_test(end_is_final),
+        cmocka_unit_test(end_is_final_under_a_launcher),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
