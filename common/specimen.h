@@ -22,7 +22,10 @@ enum brc_grains {
     REAL3(size, "m", "10 cm, 10 cm, 10 cm", "(0, inf)", "box: edge lengths along x, y, z")         \
     REAL(diameter, "m", "80 mm", "(0, inf)", "cylinder: diameter of the circle")                   \
     REAL(height, "m", "160 mm", "(0, inf)", "cylinder: height (thickness of a disc), along z")     \
-    INT(sides, "64", "[4, 1024]", "cylinder: sides of the prism, equal area to the circle; even")  \
+    INT(sides, "0", "[0, 1024]",                                                                   \
+        "cylinder: sides of the prism, equal area to the circle; even; 0: 256, and 30 for a "      \
+        "mesh, "                                                                                   \
+        "as in gt12")                                                                              \
     TEXT(planes, "", "polyhedron: file of planes, one 'nx ny nz d' a line, n . x <= d, in metres") \
     CHOICE(grains, "packing|grid|mesh|points|tess", "packing",                                     \
            "packing: spheres grown to contact, Laguerre cells; grid: one random seed per cubic "   \
@@ -52,7 +55,7 @@ extern const struct brc_param_list brc_specimen_param_list;
 struct brc_specimen {
     struct brc_specimen_params params;
     struct brc_convex domain; /* face ids: box -x +x -y +y -z +z = 0..5; cylinder 0 bottom, 1 top,
-                                 2 + k side k with its normal at 90 deg + k 360/sides */
+                                 2 + k side k with its normal at 90 deg + k 360/(number of sides) */
     double domain_volume;     /* m3 */
     struct brc_facets facets;
     double solid_fraction;        /* spheres / domain; 0 for plain Voronoi */

@@ -237,7 +237,7 @@ static void test_disc(void **state)
 {
     (void)state;
     struct brc_specimen_params p =
-        PARAMS("grains", "mesh", "diameter", "80 cm", "height", "1 cm", "sides", "30");
+        PARAMS("grains", "mesh", "diameter", "80 cm", "height", "1 cm"); /* 30 sides */
     struct brc_specimen s;
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
     CHECK_NEAR(s.domain_volume, 15 * 0.16 * sin(BRC_PI / 15) * 0.01, 0, 1e-13);
@@ -288,6 +288,8 @@ static void test_bad_input(void **state)
     (void)state;
     struct brc_specimen s;
     struct brc_specimen_params p = PARAMS("sides", "13", "cache", "off");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "sides");
+    p = PARAMS("sides", "2", "cache", "off");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "sides");
     p = PARAMS("grains", "grid");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "box");
