@@ -76,7 +76,7 @@ static void put_rule(FILE *out, int n)
 /* Rows that every test has. */
 static double cost_value(const struct brc_summary *s, int row)
 {
-    const double value[] = {(double)s->n_bodies, s->n_contacts_mean, (double)s->n_points,
+    const double value[] = {(double)s->n_grains, s->n_contacts_mean, (double)s->n_points,
                             (double)s->steps,    s->cpu_s,           s->ns_per_contact_step,
                             s->energy_residual,  s->energy_drift,    s->unbalanced_max};
     return value[row];
@@ -87,7 +87,7 @@ static void put_costs(FILE *out, const struct brc_summary *const *summary, int n
     static const struct {
         const char *name, *unit;
         bool is_whole;
-    } row[] = {{"bodies", "", true},
+    } row[] = {{"grains", "", true},
                {"active contacts, mean", "", true},
                {"points", "", true},
                {"steps", "", true},
@@ -106,6 +106,21 @@ static void put_costs(FILE *out, const struct brc_summary *const *summary, int n
     }
 }
 
+/* How a run ended, where the end is not that the load has dropped. */
+static void put_end(FILE *out, const struct brc_summary *s)
+{
+    const struct brc_summary_value *strength = brc_output_result(s, "strength");
+    if (!s->is_finished)
+        fprintf(out, "%s did not reach the end of the test: ended by %s\n", s->model, s->ended_by);
+    else if (strength && !isfinite(strength->value))
+        fprintf(out, "%s: ended by %s, no failure: the load was still rising\n", s->model,
+                s->ended_by);
+    else if (strength && strcmp(s->ended_by, "test.stop_drop") != 0)
+        fprintf(out,
+                "%s: ended by %s, past its peak, before the load had fallen to test.stop_drop\n",
+                s->model, s->ended_by);
+}
+
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n)
 {
     fprintf(out, "%s\n", *summary[0]->title ? summary[0]->title : summary[0]->case_name);
@@ -122,7 +137,5 @@ void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int 
     put_rule(out, n);
     fputs("broken: bonds, or local points where a model has several a contact\n", out);
     for (int i = 0; i < n; i++)
-        if (!summary[i]->is_finished)
-            fprintf(out, "%s did not reach the end of the test: ended by %s\n", summary[i]->model,
-                    summary[i]->ended_by);
+        put_end(out, summary[i]);
 }

@@ -234,8 +234,7 @@ int brc_export_stl(struct brc_context *ctx, FILE *out, const struct brc_sim *sim
 {
     struct brc_fragments fragments;
     struct surface s = {.sim = sim, .fragments = &fragments};
-    int code = brc_fragments_find(ctx, sim->bodies.n_grains, sim->specimen->facets.volume,
-                                  &sim->pairs, &fragments);
+    int code = brc_fragments_find(ctx, sim, &fragments);
     if (code == 0)
         code = open_surface(ctx, &s);
     for (size_t k = 0; k < fragments.n && code == 0; k++)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fragments.h"
 
+#include "sim.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,8 +66,9 @@ static void number(struct brc_fragments *out, const double *volume, struct entry
     out->n = n;
 }
 
-int brc_fragments_find(struct brc_context *ctx, size_t n_grains, const double *volume,
-                       const struct brc_contacts *pairs, struct brc_fragments *out)
+int brc_fragments_connect(struct brc_context *ctx, size_t n_grains, const double *volume,
+                          const struct brc_contacts *pairs, const uint8_t *holds,
+                          struct brc_fragments *out)
 {
     struct entry *entry = brc_alloc(ctx, n_grains, sizeof *entry);
     *out = (struct brc_fragments){.n_grains = n_grains,
@@ -75,12 +78,29 @@ int brc_fragments_find(struct brc_context *ctx, size_t n_grains, const double *v
     int code = entry && out->of && out->volume && out->size ? 0 : BRC_ERR_MEMORY;
     for (size_t i = 0; code == 0 && i < n_grains; i++)
         out->of[i] = (int32_t)i;
-    for (size_t i = 0; code == 0 && i < pairs->table.n; i++)
-        if (pairs->status[i] == BRC_INTACT)
+    for (size_t i = 0; code == 0 && i < pairs->n; i++)
+        if (holds[i])
             join(out->of, pairs->a[i], pairs->b[i]);
     if (code == 0)
         number(out, volume, entry);
     free(entry);
+    return code;
+}
+
+int brc_fragments_find(struct brc_context *ctx, const struct brc_sim *sim,
+                       struct brc_fragments *out)
+{
+    const struct brc_contacts *c = &sim->pairs;
+    uint8_t *holds = brc_alloc(ctx, c->n, sizeof *holds);
+    *out = (struct brc_fragments){0};
+    if (!holds)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < c->n; i++)
+        holds[i] = c->status[i] == BRC_INTACT &&
+                   sim->model.strength_left(sim, sim->state, i) >= BRC_FRAGMENT_STRENGTH;
+    int code = brc_fragments_connect(ctx, sim->bodies.n_grains, sim->specimen->facets.volume, c,
+                                     holds, out);
+    free(holds);
     return code;
 }
 

@@ -87,7 +87,7 @@ static int make_grains(struct brc_context *ctx, const struct brc_sim *sim, struc
     const struct brc_bodies *b = &sim->bodies;
     struct brc_grain_cells *cells = &f->grain_cells;
     struct brc_fragments fragments;
-    int code = brc_fragments_find(ctx, s->n_cells, s->volume, &sim->pairs, &fragments);
+    int code = brc_fragments_find(ctx, sim, &fragments);
     if (code == 0)
         code = grain_shapes(ctx, sim, &f->grains);
     if (code == 0)

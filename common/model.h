@@ -70,6 +70,9 @@ struct brc_model {
     int (*after_break)(struct brc_sim *sim, void *state, size_t first);
     /* A loaded state has replaced all fields: derive private memory again. Default: nothing. */
     int (*restore)(struct brc_sim *sim, void *state);
+    /* Part of the tensile strength of an intact bond (row of sim->pairs) that is left, in [0, 1]:
+     * tells what holds together. Default: 1. */
+    double (*strength_left)(const struct brc_sim *sim, const void *state, size_t row);
     /* One paragraph for the run header: readings chosen, derived stiffness. Default: empty. */
     void (*describe)(const struct brc_sim *sim, const void *state, char *text, size_t size);
 };

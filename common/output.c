@@ -123,7 +123,7 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
     json_text_entry(out, "ended_by", s->ended_by);
     fprintf(out, "  \"seed\": %d,\n", s->seed);
     json_text_entry(out, "version", BRC_VERSION);
-    fprintf(out, "  \"n_bodies\": %zu,\n  \"n_facets\": %zu,\n", s->n_bodies, s->n_facets);
+    fprintf(out, "  \"n_grains\": %zu,\n  \"n_facets\": %zu,\n", s->n_grains, s->n_facets);
     fprintf(out, "  \"n_contacts\": %zu,\n  \"n_contacts_listed\": %zu,\n", s->n_contacts,
             s->n_contacts_listed);
     json_number_entry(out, "n_contacts_mean", s->n_contacts_mean);

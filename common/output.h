@@ -53,12 +53,12 @@ struct brc_summary {
     char ended_by[64]; /* key of the condition that ended the run, "signal" or "failure" */
     bool is_finished;  /* by a condition of the test */
     int seed;
-    size_t n_bodies;          /* grains and platens */
+    size_t n_grains;          /* platens are none */
     size_t n_facets;          /* of the specimen, boundary included */
     size_t n_contacts;        /* rows that carry a spring now, platens included */
     size_t n_contacts_listed; /* rows, those that only watch included */
     size_t n_points;          /* points of those rows, broken ones included */
-    size_t n_fragments;       /* sets of grains that intact bonds connect */
+    size_t n_fragments;       /* sets of grains that bonds hold together, fragments.h */
     size_t n_frames;          /* for ParaView */
     struct brc_frame_count frame[BRC_N_FRAME_KINDS]; /* the last one */
     double n_contacts_mean; /* rows that carry a spring, mean over the steps */

@@ -67,6 +67,12 @@ static int restore_nothing(struct brc_sim *sim, void *state)
     return 0;
 }
 
+static double whole_strength(const struct brc_sim *sim, const void *state, size_t row)
+{
+    (void)sim, (void)state, (void)row;
+    return 1;
+}
+
 static void describe_nothing(const struct brc_sim *sim, const void *state, char *text, size_t size)
 {
     (void)sim, (void)state;
@@ -100,6 +106,7 @@ int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
     DEFAULT(select, select_nothing);
     DEFAULT(after_break, break_nothing);
     DEFAULT(restore, restore_nothing);
+    DEFAULT(strength_left, whole_strength);
     DEFAULT(describe, describe_nothing);
 #undef DEFAULT
     return 0;

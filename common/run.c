@@ -390,7 +390,7 @@ static int measure(const struct run *r, struct brc_summary *s)
     sim->model.energy(sim, sim->state, stored);
     *s = (struct brc_summary){
         .seed = job->specimen.seed,
-        .n_bodies = sim->bodies.n,
+        .n_grains = sim->bodies.n_grains,
         .n_facets = sim->specimen->facets.n_facets,
         .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
         .n_contacts_listed = sim->pairs.n + sim->platens.n,
@@ -418,8 +418,7 @@ static int measure(const struct run *r, struct brc_summary *s)
     for (int i = 0; i < s->n_results; i++)
         s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit};
     memcpy(s->frame, r->frames.last, sizeof s->frame);
-    int code = brc_fragments_find(r->ctx, sim->bodies.n_grains, sim->specimen->facets.volume,
-                                  &sim->pairs, &fragments);
+    int code = brc_fragments_find(r->ctx, sim, &fragments);
     s->n_fragments = fragments.n;
     brc_fragments_free(&fragments);
     return code;

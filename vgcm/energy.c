@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Energy and springs recomputed from the state alone. */
+/* Energy, springs and strength left, from the state alone. */
 #include "vgcm/contact.h"
 
 /* State of point j of row i with its forces [N]. */
@@ -83,6 +83,21 @@ void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, d
         add_pair(sim, law, i, stored);
     for (size_t i = 0; i < sim->platens.n; i++)
         add_wall(sim, law, i, stored);
+}
+
+double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t row)
+{
+    const struct vgcm_points *p = vgcm_point_columns(c);
+    int flags = law->is_brittle ? VGCM_BRITTLE : 0;
+    double whole = 0, left = 0;
+    if (vgcm_columns(c)->phase[row] == VGCM_AFFINE)
+        return 1;
+    for (size_t j = (size_t)c->p0[row], end = j + (size_t)c->np[row]; j < end; j++) {
+        double damage = p->law[j][VGCM_DN] + p->law[j][VGCM_DS], area = p->law[j][VGCM_AREA];
+        whole += area;
+        left += area * vgcm_lanes_strength(law, flags, brc_lanes_all(damage))[0];
+    }
+    return whole > 0 ? left / whole : 0;
 }
 
 /* Springs of all points of a facet, those that are broken and open included, as they may close

@@ -190,6 +190,12 @@ static int springs(const struct brc_sim *sim, const void *state, struct brc_spri
     return vgcm_springs_list(sim, &own->law, out);
 }
 
+static double strength_left(const struct brc_sim *sim, const void *state, size_t row)
+{
+    const struct vgcm_state *own = state;
+    return vgcm_strength_left(&sim->pairs, &own->law, row);
+}
+
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
 {
     static const char *const rule[] = {"gap", "all", "area"};
@@ -233,4 +239,5 @@ const struct brc_model brc_model_vgcm = {
     .create = create,
     .free = free_state,
     .select = select_loops,
+    .strength_left = strength_left,
     .describe = describe};

@@ -152,6 +152,8 @@ extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2, vgcm_loops_avx5
 
 /* energy.c */
 void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3]);
+/* Tensile strength of a bonded row that its points have left, over that at the start, by area. */
+double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t row);
 int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
                       struct brc_springs *out);
 

@@ -108,6 +108,7 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
         cmp -s $table.csv "$model/$table.csv" || fail "$model: no $table.csv"
     done
     [ "$("$breccia" export "$state" --table bodies | wc -l)" -eq 39 ] || fail "$model: bodies"
+    grep -q '"n_grains": 36,' "$model/summary.json" || fail "$model: platens count as grains"
     "$breccia" export "$state" --format stl -o fragments.stl || fail "$model: no STL"
     fragments=$(sed -n 's/.*"n_fragments": \([0-9]*\),/\1/p' "$model/summary.json")
     wrong=$(check_stl fragments.stl "$fragments")

@@ -58,7 +58,7 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
     "$breccia" run box.yaml --model "$model" -o "$model" --quiet >said.txt 2>&1 || fail "$(cat said.txt)"
     "$breccia" run again.yaml --model "$model" -o "$model-again" --quiet >said.txt 2>&1 ||
         fail "$(cat said.txt)"
-    for key in n_bodies n_facets n_contacts; do
+    for key in n_grains n_facets n_contacts; do
         [ "$(value "$model" $key)" = "$(value "$model-again" $key)" ] || fail "$model: $key differs"
     done
     cut -d, -f5 "$model/curve.csv" >force

@@ -59,7 +59,12 @@ static void check_graph(struct brc_context *ctx, uint64_t *random, int part)
     make_pairs(ctx, &c, random, part);
     for (int i = 0; i < N; i++)
         all += volume[i] = (double)(1 + draw(random) % 4); /* equal ones, too */
-    CHECK_OK(ctx, brc_fragments_find(ctx, N, volume, &c, &f));
+    uint8_t *holds = malloc(c.n + 1);
+    assert_non_null(holds);
+    for (size_t k = 0; k < c.n; k++)
+        holds[k] = c.status[k] == BRC_INTACT;
+    CHECK_OK(ctx, brc_fragments_connect(ctx, N, volume, &c, holds, &f));
+    free(holds);
     spread(&c, low);
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++)

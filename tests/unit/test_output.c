@@ -97,7 +97,7 @@ static struct brc_summary sample(void)
                             .ended_by = "test.stop_drop",
                             .is_finished = true,
                             .seed = 7,
-                            .n_bodies = 500,
+                            .n_grains = 500,
                             .steps = INT64_C(12345678901),
                             .cpu_s = 0.1,
                             .ns_per_contact_step = NAN,
@@ -219,12 +219,50 @@ static void test_table(void **state)
     free(text);
 }
 
+/* The last line of the table of one run. */
+static char *end_of_table(const struct brc_summary *s)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    brc_compare_table(out, &s, 1);
+    fclose(out);
+    char *last = text + size - 1; /* its newline */
+    while (last > text && last[-1] != '\n')
+        last--;
+    last = strdup(last);
+    free(text);
+    return last;
+}
+
+/* A run that has not failed says so; one that has says nothing. */
+static void test_end_of_table(void **state)
+{
+    (void)state;
+    struct brc_summary s = sample();
+    s.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa"};
+    char *text = end_of_table(&s);
+    assert_null(strstr(text, "ended by"));
+    free(text);
+    strcpy(s.ended_by, "test.strain_max");
+    text = end_of_table(&s);
+    assert_string_equal(text, "vgcm: ended by test.strain_max, past its peak, before the load had "
+                              "fallen to test.stop_drop\n");
+    free(text);
+    s.results[1].value = NAN;
+    text = end_of_table(&s);
+    assert_string_equal(text,
+                        "vgcm: ended by test.strain_max, no failure: the load was still rising\n");
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_summary_is_json), cmocka_unit_test(test_empty_results),
         cmocka_unit_test(test_unwritable),      cmocka_unit_test(test_csv),
-        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_table),           cmocka_unit_test(test_end_of_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
