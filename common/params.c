@@ -174,10 +174,20 @@ static int check_range(struct brc_context *ctx, const struct brc_param *p, doubl
 
 /* ---- one value of each kind ---------------------------------------------------------------- */
 
+/* A default that is found later, from what else is known; NAN until then. */
+static bool is_auto(const struct brc_param *p)
+{
+    return p->kind == BRC_REAL && p->default_text && strcmp(p->default_text, BRC_AUTO) == 0;
+}
+
 static int set_real(struct brc_context *ctx, const struct brc_param *p, double *to,
                     const char *text, const char *place)
 {
     double value;
+    if (is_auto(p) && strcmp(text, BRC_AUTO) == 0) {
+        *to = NAN;
+        return 0;
+    }
     BRC_TRY(brc_params_quantity(ctx, text, p->unit, &value, place));
     BRC_TRY(check_range(ctx, p, value, text, place));
     *to = value;
@@ -406,8 +416,9 @@ static void add_range(struct brc_context *ctx, const struct brc_param *p)
 {
     size_t used = strlen(ctx->message);
     if (p->range && !strstr(ctx->message, "allowed"))
-        snprintf(ctx->message + used, sizeof ctx->message - used, "; allowed %s%s%s", p->range,
-                 strcmp(p->unit, "1") == 0 ? "" : " ", strcmp(p->unit, "1") == 0 ? "" : p->unit);
+        snprintf(ctx->message + used, sizeof ctx->message - used, "; allowed %s%s%s%s", p->range,
+                 strcmp(p->unit, "1") == 0 ? "" : " ", strcmp(p->unit, "1") == 0 ? "" : p->unit,
+                 is_auto(p) ? ", or " BRC_AUTO : "");
 }
 
 int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
@@ -438,7 +449,9 @@ static int real_text(const struct brc_param *p, double value, char *buffer, size
     double factor = 1;
     bool is_pure = strcmp(p->unit, "1") == 0;
     char number[64];
-    if (p->default_text)
+    if (is_auto(p) && isnan(value))
+        return snprintf(buffer, size, BRC_AUTO);
+    if (p->default_text && !is_auto(p))
         split_quantity(p->default_text, &unit);
     size_t n = strcspn(unit, ","); /* of three, the first one's */
     char own[64];

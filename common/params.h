@@ -19,7 +19,7 @@
 #include <stdio.h>
 
 enum brc_param_kind {
-    BRC_REAL,   /* double, SI */
+    BRC_REAL,   /* double, SI; NAN: `auto`, where that is the default */
     BRC_INT,    /* int */
     BRC_CHOICE, /* int: position in the |-separated list of choices */
     BRC_FLAG,   /* int: on = 1, off = 0 */
@@ -28,6 +28,8 @@ enum brc_param_kind {
     BRC_INT3    /* int[3] */
 };
 enum { BRC_TEXT_SIZE = 256 };
+/* Default text of a BRC_REAL that its owner finds from other keys and the specimen. */
+#define BRC_AUTO "auto"
 
 struct brc_param {
     const char *key;

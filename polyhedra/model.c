@@ -21,16 +21,13 @@ static const struct brc_field point_fields[] = {POLY_POINT_FIELDS(BRC_FIELD, BRC
 static int check(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen)
 {
     const struct poly_params *p = params;
-    const struct brc_facets *f = &specimen->facets;
-    double volume = 0;
-    for (size_t i = 0; i < f->n_cells; i++)
-        volume += f->volume[i];
-    double mean = cbrt(volume / (double)f->n_cells);
-    if (p->radius >= 0.5 * mean)
+    struct poly_scale scale;
+    poly_scale_measure(&scale, &specimen->facets);
+    if (p->radius >= 0.5 * scale.size) /* not where it is auto */
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "polyhedra.radius = %g m is not below half of the mean grain size (%g m): nothing "
                  "would be left of the grains; a tenth of the grain size is usual",
-                 p->radius, mean);
+                 p->radius, scale.size);
     if (p->evaluation == POLY_CONDENSED && p->features == POLY_CLOSED)
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
@@ -41,7 +38,8 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
 
 static int create(struct brc_sim *sim, void **state)
 {
-    const struct poly_params *p = poly_params_of(sim);
+    struct poly_params *p = sim->params;
+    struct poly_scale scale;
     if (p->evaluation == POLY_CONDENSED && poly_is_viscous(sim))
         BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
                  "polyhedra.evaluation = condensed goes without viscosity: set polyhedra.gn and "
@@ -54,6 +52,9 @@ static int create(struct brc_sim *sim, void **state)
     if (st->block == NULL)
         BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a block of rows", size);
     memset(st->block, 0, size);
+    st->is_scaled = isnan(p->kn);
+    poly_scale_measure(&scale, &sim->specimen->facets);
+    poly_scale_params(&scale, p);
     return 0;
 }
 
@@ -114,11 +115,13 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
         text, size,
         "Bonded spheropolyhedra: features %s, bond area %s, strain length %s, torsion %s, "
         "%zu bonds of mean area %.4g m2 and mean strain length %.4g m (stiffness %.4g N/m in "
-        "tension, against %.4g N/m of a feature contact); erosion by R = %.4g m removes %zu of "
+        "tension, against K_n = %.4g N/m of a feature contact%s, with K_t = %.4g N/m); erosion by "
+        "R = %.4g m removes %zu of "
         "the inner facets on a side%s.",
         choice(p, "features", features, sizeof features), choice(p, "area", area, sizeof area),
         choice(p, "strain_length", length, sizeof length), p->torsion ? "on" : "off", st->n_bonds,
-        st->mean_area, st->mean_length, p->bn * stiff, p->kn, p->radius, st->n_removed,
+        st->mean_area, st->mean_length, p->bn * stiff, p->kn,
+        st->is_scaled ? ", by kn_modulus" : "", p->kt, p->radius, st->n_removed,
         st->n_removed == 0            ? ""
         : p->area == POLY_AREA_ERODED ? ": they have no bond"
                                       : ": they are bonded by their own area");

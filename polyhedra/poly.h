@@ -17,18 +17,26 @@
 
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
-    REAL(radius, "m", "1 mm", "(0, inf)", "sphero-radius R of erosion and rounding, eq 2")        \
-    REAL(kn, "N/m", "1e8 N/m", "(0, inf)", "normal stiffness of a feature contact, eq 4")         \
-    REAL(kt, "N/m", "1e8 N/m", "[0, inf)", "tangential stiffness of a feature contact, eq 8")     \
-    REAL(mu, "1", "0.3", "[0, 10]", "friction coefficient of grains")                             \
+    REAL(radius, "m", "auto", "(0, inf)",                                                         \
+         "sphero-radius R of erosion and rounding, eq 2; auto: by radius_ratio")                  \
+    REAL(radius_ratio, "1", "0.05", "(0, 0.5)",                                                   \
+         "radius auto: R over the mean grain size, the cube root of the mean volume")             \
+    REAL(kn, "N/m", "auto", "(0, inf)",                                                           \
+         "normal stiffness K_n of a feature contact, eq 4; auto: by kn_modulus")                  \
+    REAL(kn_modulus, "Pa", "9.2 GPa", "(0, inf)",                                                 \
+         "kn auto: K_n over mean facet area / mean distance of the cell centres")                 \
+    REAL(kt, "N/m", "auto", "[0, inf)",                                                           \
+         "tangential stiffness K_t of a feature contact, eq 8; auto: by kt_ratio")                \
+    REAL(kt_ratio, "1", "0.6", "[0, 10]", "kt auto: K_t over K_n")                                \
+    REAL(mu, "1", "0.85", "[0, 10]", "friction coefficient of grains")                            \
     REAL(gn, "1/s", "2529.8 1/s", "[0, inf)", "normal viscosity, eq 10; dynamic regime only")     \
     REAL(gt, "1/s", "0 1/s", "[0, inf)", "tangential viscosity, eq 10; dynamic regime only")      \
     FLAG(bonds, "on", "bonds where the specimen has facets; off: a cohesionless pack")            \
     FLAG(breakable, "on", "bonds break by eq 15")                                                 \
-    REAL(bn, "Pa", "20 GPa", "[0, inf)", "normal modulus of the bonds, eq 11")                    \
-    REAL(bt, "Pa", "20 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13")                \
-    REAL(bm, "Pa", "3.3 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14")                  \
-    REAL(eps_th, "1", "0.02", "(0, inf)", "strain limit of the bonds, eq 15")                     \
+    REAL(bn, "Pa", "9 GPa", "[0, inf)", "normal modulus of the bonds, eq 11")                     \
+    REAL(bt, "Pa", "1.1 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13")               \
+    REAL(bm, "Pa", "0.18 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14")                 \
+    REAL(eps_th, "1", "2.66e-3", "(0, inf)", "strain limit of the bonds, eq 15")                  \
     FLAG(theta_limit, "on", "eq 15 has its torsion term; off: only strains break bonds")          \
     REAL(theta_th, "rad", "0.05 rad", "(0, inf)", "torsion limit of the bonds, eq 15")            \
     CHOICE(                                                                                       \
@@ -146,6 +154,7 @@ struct poly_state {
     size_t n_removed;      /* facets that erosion removes on either side */
     size_t n_bonds;
     double mean_area, mean_length; /* of the bonds */
+    bool is_scaled;                /* K_n follows from kn_modulus */
     struct poly_kernels kernels;
     struct poly_block *block; /* work space of the loop over pairs */
 };
@@ -176,6 +185,15 @@ static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32
 
 /* Rotation matrices, core vertices and planes in space for the present poses. */
 void poly_world(const struct brc_sim *sim, const struct poly_state *st);
+
+/* scale.c: values that are `auto`, from the grains; what is given stays. A specimen without inner
+ * facets counts as cubes of the mean volume. */
+struct poly_scale {
+    double size;           /* m, cube root of the mean volume */
+    double area, distance; /* m2, m: mean inner facet, mean distance of the centres over it */
+};
+void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facets);
+void poly_scale_params(const struct poly_scale *scale, struct poly_params *params);
 
 /* rows.c: initial bonds, candidates, feature lists. */
 int poly_open_bonds(struct brc_sim *sim, void *state);

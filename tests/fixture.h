@@ -56,6 +56,13 @@ int fixture_n_models(void);
 const struct brc_model *fixture_model(int i);
 bool fixture_is(const struct brc_model *model, const char *name);
 
+/* Settings of the two papers, for tests whose numbers are of that set: Table 1 of gt12, and the
+ * fracture energies of the softening set of vgcm. */
+#define FIXTURE_TABLE_1                                                                      \
+    "radius: 1 mm; kn: 1e8 N/m; kt: 1e8 N/m; mu: 0.3; bn: 20 GPa; bt: 20 GPa; bm: 3.3 GPa; " \
+    "eps_th: 0.02"
+#define FIXTURE_ENERGIES "g_fn: 64.6 J/m2; g_fs: 31114.4 J/m2"
+
 /* --- moving ------------------------------------------------------------------------------------
  */
 

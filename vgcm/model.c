@@ -38,6 +38,23 @@ void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *p)
         vgcm_law_softening(law, 0.5, 1); /* a straight line */
 }
 
+/* Elastic energies per area grow with the distance of the centres: an energy in their measure makes
+ * a specimen as brittle as a scaled one. Without shear stiffness, that of eta = 1 stands in. */
+void vgcm_scale_params(struct vgcm_params *p, const struct brc_facets *facets)
+{
+    struct vgcm_census census;
+    struct vgcm_law law;
+    vgcm_law_of(&law, p);
+    vgcm_census_take(&census, p, facets);
+    law.eta = p->eta > 0 ? p->eta : 1;
+    double kn = census.n_contacts > 0 ? law.e_bar / census.mean_distance : law.e_bar;
+    double ratio = p->energy_ratio - (law.is_post_peak ? 1 : 0);
+    if (isnan(p->g_fn))
+        p->g_fn = ratio * vgcm_law_elastic_n(&law, kn);
+    if (isnan(p->g_fs))
+        p->g_fs = ratio * vgcm_law_elastic_s(&law, kn);
+}
+
 /* The softening branch of every contact must fall to the right: no snap-back. */
 static int check_energy(struct brc_context *ctx, const char *name, double given, double elastic,
                         double distance)
@@ -53,9 +70,10 @@ static int check_energy(struct brc_context *ctx, const char *name, double given,
 
 static int check(struct brc_context *ctx, const void *values, const struct brc_specimen *specimen)
 {
-    const struct vgcm_params *p = values;
+    struct vgcm_params scaled = *(const struct vgcm_params *)values, *p = &scaled;
     struct vgcm_census census;
     struct vgcm_law law;
+    vgcm_scale_params(p, &specimen->facets);
     vgcm_law_of(&law, p);
     vgcm_census_take(&census, p, &specimen->facets);
     if (census.n_inner > 0 && census.n_contacts == 0)
@@ -92,6 +110,7 @@ static int create(struct brc_sim *sim, void **state)
     struct vgcm_state *own = brc_alloc(sim->ctx, 1, sizeof *own);
     if (!own)
         return BRC_ERR_MEMORY;
+    vgcm_scale_params(sim->params, &sim->specimen->facets);
     vgcm_law_of(&own->law, sim->params);
     sim->pairs.is_busy = is_busy;
     sim->platens.lanes = BRC_LANES; /* walls.h takes so many points of a row at a time */
@@ -209,12 +228,13 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
     snprintf(text, size,
              "interaction %s: %zu of %zu inner facets, mean centre distance %.4g mm (gap %.4g mm); "
              "points %s; softening %s; elastic energy at the peak, mean distance: %.4g J/m2 in "
-             "tension, %.4g J/m2 in shear; uniform-strain estimate for all facets: E = %.4g GPa, "
+             "tension, %.4g J/m2 in shear; fracture energies: %.4g and %.4g J/m2; uniform-strain "
+             "estimate for all facets: E = %.4g GPa, "
              "nu = %.3g",
              rule[p->interaction], census.n_contacts, census.n_inner, 1e3 * census.mean_distance,
              1e3 * census.gap, points[p->points], softening[p->softening],
              kn > 0 ? vgcm_law_elastic_n(&own->law, kn) : 0,
-             kn > 0 ? vgcm_law_elastic_s(&own->law, kn) : 0,
+             kn > 0 ? vgcm_law_elastic_s(&own->law, kn) : 0, p->g_fn, p->g_fs,
              1e-9 * p->e_bar * (2 + 3 * eta) / (4 + eta), (1 - eta) / (4 + eta));
 }
 

@@ -25,8 +25,11 @@ enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERAC
     REAL(softening_w1, "1", "0.75", "(0, 2)",                                                     \
          "bilinear: displacement past the peak at the kink, in (post-peak energy)/strength; it "  \
          "ends at (2 - w1)/beta")                                                                 \
-    REAL(g_fn, "J/m2", "64.6 J/m2", "(0, inf)", "fracture energy in tension")                     \
-    REAL(g_fs, "J/m2", "31114.4 J/m2", "(0, inf)", "fracture energy in shear")                    \
+    REAL(g_fn, "J/m2", "auto", "(0, inf)", "fracture energy in tension; auto: by energy_ratio")   \
+    REAL(g_fs, "J/m2", "auto", "(0, inf)", "fracture energy in shear; auto: by energy_ratio")     \
+    REAL(energy_ratio, "1", "9.5", "(1, 1e6]",                                                    \
+         "g_fn, g_fs auto: fracture energy over the elastic energy at the peak of a contact of "  \
+         "the mean distance")                                                                     \
     CHOICE(energies, "total|post_peak", "total",                                                  \
            "g_fn and g_fs count from zero displacement, or from the peak on")                     \
     CHOICE(                                                                                       \
@@ -136,6 +139,8 @@ struct vgcm_census {
 };
 void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets);
+/* Fracture energies that are `auto`, which go along with the grain size; given ones stay. */
+void vgcm_scale_params(struct vgcm_params *params, const struct brc_facets *facets);
 /* Radius of a cell's sphere; for a plain Voronoi cell the largest about the seed that fits in. */
 double vgcm_radius(const struct brc_facets *facets, size_t cell);
 int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);

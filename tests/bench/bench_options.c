@@ -47,14 +47,14 @@ enum { N_SETUPS = sizeof setups / sizeof setups[0] };
 /* Settings of a model with all its options off. */
 static const char *plain_of(const char *model)
 {
-    return strcmp(model, "vgcm") == 0
-               ? "softening: none; mu: 0; viscous: 0 1/s"
-               : "mu: 0; torsion: off; gn: 0 1/s; gt: 0 1/s; evaluation: literal";
+    return strcmp(model, "vgcm") == 0 ? "softening: none; mu: 0; viscous: 0 1/s"
+                                      : FIXTURE_TABLE_1
+               "; mu: 0; torsion: off; gn: 0 1/s; gt: 0 1/s; evaluation: literal";
 }
 
 static void run_setup(const struct setup *s)
 {
-    char settings[256], run[256], test[256];
+    char settings[512], run[256], test[256];
     void *state;
     fixture_open(&state);
     struct fixture *f = state;

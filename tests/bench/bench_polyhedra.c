@@ -61,6 +61,7 @@ static void make(struct brc_context *ctx, struct brc_sim *sim, const struct brc_
     must(ctx, brc_params_defaults(ctx, brc_model_polyhedra.params, &p));
     must(ctx, brc_params_defaults(ctx, brc_test_param_list, &t));
     must(ctx, brc_params_defaults(ctx, brc_run_param_list, &r));
+    set_table_1(ctx, brc_model_polyhedra.params, &p);
     for (int i = 0; settings[i][0]; i++)
         set(ctx, brc_model_polyhedra.params, &p, settings[i][0], settings[i][1]);
     set(ctx, brc_test_param_list, &t, "kind", kind);

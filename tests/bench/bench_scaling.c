@@ -47,6 +47,8 @@ static void make(struct brc_context *ctx, const struct brc_model *model,
     struct brc_run_params r;
     void *params = calloc(1, model->params.owner_size);
     must(ctx, brc_params_defaults(ctx, model->params, params));
+    if (model == &brc_model_polyhedra)
+        set_table_1(ctx, model->params, params);
     must(ctx, brc_params_defaults(ctx, brc_test_param_list, &t));
     must(ctx, brc_params_defaults(ctx, brc_run_param_list, &r));
     set(ctx, brc_test_param_list, &t, "loading", "fixed");

@@ -84,7 +84,8 @@ static void runs(void **state)
             for (int k = 0; k < 2; k++) {
                 stir_heap(f);
                 fixture_specimen(f, SPECIMENS[0]);
-                const char *settings = fixture_is(model, "polyhedra") ? "eps_th: 5e-4" : "";
+                const char *settings =
+                    fixture_is(model, "polyhedra") ? FIXTURE_TABLE_1 "; eps_th: 5e-4" : "";
                 const char *run = t < 2                       ? ""
                                   : fixture_is(model, "null") ? "regime: dynamic; dt: 1e-6 s"
                                                               : "regime: dynamic";

@@ -19,7 +19,7 @@ static uint64_t hash_with(struct fixture *f, const struct brc_model *model, int 
     fixture_specimen(f, "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
                         "jitter: 0.8; seed: 5");
     if (!fixture_is(model, "vgcm") || setting == 0)
-        softening = fixture_is(model, "polyhedra") ? "eps_th: 2e-4" : "";
+        softening = fixture_is(model, "polyhedra") ? FIXTURE_TABLE_1 "; eps_th: 2e-4" : "";
     fixture_sim(f, model, softening, SETTINGS[setting][0], run);
     for (size_t c = 0; setting == 2 && c < f->sim.bodies.n_grains; c++)
         for (int j = 0; j < 3; j++)

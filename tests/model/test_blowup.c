@@ -9,9 +9,9 @@
  * what leaves nothing but bonds that never break: no place for energy to go. */
 static const struct spoilt {
     const char *model, *shown, *spoils, *unbreakable;
-} spoilt[] = {
-    {"vgcm", ", phase ", "kn", "softening: none; sigma_t: 1e9 GPa; tau: 1e9 GPa"},
-    {"polyhedra", ", room ", "bond", "breakable: off; gn: 0 1/s; mu: 0; kn: 1 N/m; kt: 0 N/m"}};
+} spoilt[] = {{"vgcm", ", phase ", "kn", "softening: none; sigma_t: 1e9 GPa; tau: 1e9 GPa"},
+              {"polyhedra", ", room ", "bond",
+               FIXTURE_TABLE_1 "; breakable: off; gn: 0 1/s; mu: 0; kn: 1 N/m; kt: 0 N/m"}};
 enum { N_MODELS = sizeof spoilt / sizeof spoilt[0] };
 
 static const struct brc_model *model_of(int i)

@@ -440,7 +440,7 @@ static void brittle_drops_at_once(void **state)
 static void damage_unloads_by_the_secant(void **state)
 {
     struct fixture *f = *state;
-    build_cells(f, "");
+    build_cells(f, FIXTURE_ENERGIES);
     double sigma = 11.4e6, u0 = sigma * H / E_BAR, g_s = 64.6 - 0.5 * sigma * u0;
     double u = u0 + 0.4 * g_s / sigma, x[3];
     struct pull r = pull(f, 0, u, -1, 2000);

@@ -15,14 +15,11 @@ struct subject {
     double stable_part; /* of the step limit; less where springs begin and end within a step */
 };
 static const struct subject SUBJECTS[] = {
-    {"polyhedra",
-     "radius: 1 mm; kn: 1e8 N/m; kt: 1e8 N/m; bn: 20 GPa; bt: 20 GPa; gn: 0 1/s; "
-     "evaluation: literal",
-     "radius: 1 mm; bn: 20 GPa; bt: 20 GPa; gn: 0 1/s; eps_th: 5e-4; theta_th: 2e-3 rad", 20e9,
-     0.7},
+    {"polyhedra", FIXTURE_TABLE_1 "; gn: 0 1/s; evaluation: literal",
+     FIXTURE_TABLE_1 "; gn: 0 1/s; eps_th: 5e-4; theta_th: 2e-3 rad", 20e9, 0.7},
     {"vgcm",
      "interaction: all; e_bar: 20 GPa; eta: 0.3; sigma_t: 1 TPa; tau: 1 TPa; softening: none",
-     "interaction: all; e_bar: 20 GPa; eta: 0.3", 20e9, 0.95},
+     "interaction: all; e_bar: 20 GPa; eta: 0.3; " FIXTURE_ENERGIES, 20e9, 0.95},
     {"null", "", "", 1e9, 0.95},
 };
 
@@ -263,7 +260,7 @@ static void forces_turn_with_the_pack(void **state)
 static void set_in_motion(struct fixture *f, const struct brc_model *model, const char *run,
                           double speed)
 {
-    char settings[256];
+    char settings[320];
     snprintf(settings, sizeof settings, "%s%s", subject(model).elastic,
              fixture_is(model, "polyhedra") ? "; mu: 0; breakable: off" : "");
     fixture_free_sim(f, model, settings, fixture_is(model, "null") ? "dt: 1e-7 s" : run);

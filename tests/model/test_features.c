@@ -76,7 +76,7 @@ struct duel {
 static void begin_duel(struct fixture *f, struct duel *d, const char *rule)
 {
     struct brc_convex cell[2], core;
-    char settings[128];
+    char settings[256];
     brc_convex_init(&core);
     for (int i = 0; i < 2; i++) {
         brc_convex_init(&cell[i]);
@@ -86,7 +86,7 @@ static void begin_duel(struct fixture *f, struct duel *d, const char *rule)
     }
     fixture_loose(f, cell, NULL, 2);
     snprintf(settings, sizeof settings,
-             "radius: 1 mm; mu: 0; gn: 0 1/s; evaluation: literal; features: %s", rule);
+             FIXTURE_TABLE_1 "; mu: 0; gn: 0 1/s; evaluation: literal; features: %s", rule);
     fixture_free_sim(f, brc_registry_find("polyhedra"), settings, "dt: 1e-9 s");
     for (int i = 0; i < 2; i++)
         brc_convex_free(&cell[i]);

@@ -36,9 +36,9 @@ static double stiffness(const struct calib_fabric *fabric, double energy, double
 static void bonds_store_what_the_sum_says(void **state)
 {
     static const char *const settings[] = {
-        "strain_length: centres; area: facet; radius: 1 mm; bt: 0 Pa; breakable: off",
-        "strain_length: gap; area: eroded; radius: 1 mm; bt: 0 Pa; breakable: off",
-        "strain_length: gap; area: facet; radius: 0.5 mm; bt: 0 Pa; breakable: off"};
+        "bn: 20 GPa; strain_length: centres; area: facet; radius: 1 mm; bt: 0 Pa; breakable: off",
+        "bn: 20 GPa; strain_length: gap; area: eroded; radius: 1 mm; bt: 0 Pa; breakable: off",
+        "bn: 20 GPa; strain_length: gap; area: facet; radius: 0.5 mm; bt: 0 Pa; breakable: off"};
     static const struct calib_fabric_rules rules[] = {{HUGE_VAL, 1e-3, false, false},
                                                       {HUGE_VAL, 1e-3, true, true},
                                                       {HUGE_VAL, 0.5e-3, false, true}};

@@ -12,8 +12,8 @@ static void pull(struct fixture *f, const char *loading, int steps)
     snprintf(test, sizeof test, "kind: tension; strain_max: 0.05; %s", loading);
     fixture_specimen(f, "shape: box; grains: grid; size: 3 cm, 3 cm, 3 cm; cells: 3, 3, 3; "
                         "jitter: 0.7; seed: 3");
-    fixture_sim(f, brc_registry_find("vgcm"), "interaction: all; e_bar: 20 GPa; eta: 0.3", test,
-                "");
+    fixture_sim(f, brc_registry_find("vgcm"),
+                "interaction: all; e_bar: 20 GPa; eta: 0.3; " FIXTURE_ENERGIES, test, "");
     fixture_steps(f, steps);
 }
 

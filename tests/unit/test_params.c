@@ -366,6 +366,37 @@ static void reference_is_aligned(void **state)
     assert_int_equal(lines, 2 + sample_list.n);
 }
 
+/* A default that its owner finds later. */
+static void a_value_may_be_auto(void **state)
+{
+    struct one {
+        double kn, e;
+    } v;
+    static const struct brc_param params[] = {
+        {"kn", BRC_REAL, "N/m", "auto", "(0, inf)", NULL, "stiffness", offsetof(struct one, kn)},
+        {"e", BRC_REAL, "Pa", "1 GPa", "(0, inf)", NULL, "modulus", offsetof(struct one, e)}};
+    const struct brc_param_list list = BRC_PARAMS(params, struct one);
+    char text[64];
+    (void)state;
+    CHECK_OK(&ctx, brc_params_check_list(&ctx, "s", list));
+    CHECK_OK(&ctx, brc_params_defaults(&ctx, list, &v));
+    assert_true(isnan(v.kn));
+    assert_string_equal(brc_params_text(&params[0], &v, text, sizeof text), "auto");
+    CHECK_OK(&ctx, brc_params_set(&ctx, list, &v, "s", "kn", "2 kN/m", "f:1"));
+    assert_true(v.kn == 2e3);
+    assert_string_equal(brc_params_text(&params[0], &v, text, sizeof text), "2000 N/m");
+    CHECK_OK(&ctx, brc_params_set(&ctx, list, &v, "s", "kn", "auto", "f:1"));
+    assert_true(isnan(v.kn));
+    CHECK_FAILS(&ctx, brc_params_set(&ctx, list, &v, "s", "kn", "0 N/m", "f:1"), BRC_ERR_INPUT,
+                "allowed (0, inf) N/m");
+    CHECK_FAILS(&ctx, brc_params_set(&ctx, list, &v, "s", "kn", "Auto", "f:1"), BRC_ERR_INPUT,
+                "or auto");
+    CHECK_FAILS(&ctx, brc_params_set(&ctx, list, &v, "s", "e", "auto", "f:1"), BRC_ERR_INPUT,
+                "f:1: s.e: 'auto' does not start with a finite decimal number");
+    CHECK_FAILS(&ctx, brc_params_set(&ctx, list, &v, "s", "e", "nan Pa", "f:1"), BRC_ERR_INPUT,
+                "does not start with a finite decimal number");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -375,6 +406,7 @@ int main(void)
         cmocka_unit_test(defaults_are_filled),
         cmocka_unit_test(values_are_set),
         cmocka_unit_test(bad_values_are_named),
+        cmocka_unit_test(a_value_may_be_auto),
         cmocka_unit_test(hints_are_near),
         cmocka_unit_test(texts_use_the_default_unit),
         cmocka_unit_test(texts_round_trip),

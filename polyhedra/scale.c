@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lengths and stiffnesses that follow from the grains, so that one set of values serves specimens
+ * of every size. */
+#include "poly.h"
+
+#include <math.h>
+
+void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facets)
+{
+    double volume = 0, area = 0, distance = 0, d[3];
+    size_t n = 0;
+    for (size_t i = 0; i < facets->n_cells; i++)
+        volume += facets->volume[i];
+    for (size_t i = 0; i < facets->n_facets; i++) {
+        const int32_t *cell = facets->cell[i];
+        if (cell[1] < 0 || !facets->is_contact[i])
+            continue;
+        brc_sub(d, facets->centre[cell[1]], facets->centre[cell[0]]);
+        area += facets->area[i];
+        distance += brc_norm(d);
+        n++;
+    }
+    scale->size = cbrt(volume / (double)facets->n_cells);
+    scale->area = n > 0 ? area / (double)n : scale->size * scale->size;
+    scale->distance = n > 0 ? distance / (double)n : scale->size;
+}
+
+void poly_scale_params(const struct poly_scale *scale, struct poly_params *params)
+{
+    if (isnan(params->radius))
+        params->radius = params->radius_ratio * scale->size;
+    if (isnan(params->kn))
+        params->kn = params->kn_modulus * scale->area / scale->distance;
+    if (isnan(params->kt))
+        params->kt = params->kt_ratio * params->kn;
+}
