@@ -16,17 +16,22 @@ const struct brc_param_list brc_case_param_list = BRC_PARAMS(case_params, struct
 /* A mapping that is open while the file is read. */
 struct level {
     char key[BRC_CASE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
-    int line;                    /* of that key */
+    int line, column;            /* of that key */
+    int place;                   /* of the mapping in the sections, -1: the root */
+    bool has_values;
 };
 
 struct reader {
     struct brc_context *ctx;
     struct brc_case *c;
     struct level level[BRC_CASE_MAX_LEVELS];
-    int depth;        /* open mappings */
-    bool is_sequence; /* inside [...] */
-    char *sequence;   /* its texts so far, joined by commas */
-    bool is_done;     /* the document has ended */
+    int depth;               /* open mappings */
+    bool is_sequence;        /* inside [...] */
+    char *sequence;          /* its texts so far, joined by commas */
+    bool is_done;            /* the document has ended */
+    size_t n_chars, n_bytes; /* up to the same place of the text */
+    size_t begin, end;       /* bytes of the last value */
+    int indent;              /* see brc_case_entry */
 };
 
 /* ---- bytes --------------------------------------------------------------------------------- */
@@ -162,15 +167,42 @@ static int fail_at(struct reader *r, int line, const char *what)
     BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: %s", r->c->path, line, what);
 }
 
+/* Bytes of the text up to a mark, which counts characters. Marks come in ascending order but for
+ * few, so that the text is gone through once. */
+static size_t byte_at(struct reader *r, const yaml_mark_t *mark)
+{
+    const char *text = r->c->text;
+    if (mark->index < r->n_chars)
+        r->n_chars = r->n_bytes = 0;
+    for (; r->n_chars < mark->index && text[r->n_bytes]; r->n_chars++)
+        do
+            r->n_bytes++;
+        while (((unsigned char)text[r->n_bytes] & 0xc0) == 0x80);
+    return r->n_bytes;
+}
+
+/* A block scalar ends on the line behind its own. */
+static void end_value(struct reader *r, const yaml_mark_t *mark)
+{
+    r->end = byte_at(r, mark);
+    while (r->end > r->begin && strchr(" \t\r\n", r->c->text[r->end - 1]))
+        r->end--;
+}
+
 /* The key whose value comes now: an entry at the level it belongs to. */
 static int take_value(struct reader *r, const char *text, int line)
 {
     struct level *top = &r->level[r->depth - 1];
     const char *name[3] = {r->depth > 1 ? r->level[0].key : "", r->depth > 2 ? r->level[1].key : "",
                            top->key};
-    int code = add_entry(r->ctx, r->c, name, text, line);
+    BRC_TRY(add_entry(r->ctx, r->c, name, text, line));
+    struct brc_case_entry *e = &r->c->entries[r->c->n - 1];
+    e->begin = r->begin;
+    e->end = r->end;
+    e->indent = r->indent;
     top->key[0] = '\0';
-    return code;
+    top->has_values = true;
+    return 0;
 }
 
 static int take_sequence_item(struct reader *r, const char *text)
@@ -195,6 +227,11 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
     for (size_t i = 0; i < n; i++)
         if ((unsigned char)text[i] < 0x20)
             return fail_at(r, line, "a value must be one line without control characters");
+    if (!r->is_sequence && top->key[0] != '\0') {
+        r->begin = byte_at(r, &event->start_mark);
+        r->indent = 0;
+    }
+    end_value(r, &event->end_mark);
     if (r->is_sequence)
         return take_sequence_item(r, text);
     if (top->key[0] == '\0') {
@@ -202,6 +239,7 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
         BRC_TRY(check_name(r->ctx, text, n, brc_case_where(r->c, line, false, where)));
         snprintf(top->key, sizeof top->key, "%s", text);
         top->line = line;
+        top->column = (int)event->start_mark.column;
         return 0;
     }
     if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0)) {
@@ -209,16 +247,27 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
             BRC_FAIL(r->ctx, BRC_ERR_INPUT,
                      "%s:%d: %s: has no value; write one or leave the key out", r->c->path,
                      top->line, top->key);
-        int code = add_section(r->ctx, r->c, top->key, top->line);
+        BRC_TRY(add_section(r->ctx, r->c, top->key, top->line));
+        struct brc_case_place *s = &r->c->sections[r->c->n_sections - 1];
+        s->form = BRC_CASE_NULL;
+        s->begin = r->begin;
+        s->end = r->end;
         top->key[0] = '\0';
-        return code;
+        top->has_values = true;
+        return 0;
     }
     return take_value(r, text, top->line);
 }
 
-static int open_mapping(struct reader *r, int line)
+static struct brc_case_place *place_of(struct reader *r, const struct level *level)
+{
+    return level->place < 0 ? &r->c->root : &r->c->sections[level->place];
+}
+
+static int open_mapping(struct reader *r, const yaml_event_t *event, int line)
 {
     char name[2 * BRC_CASE_KEY_SIZE];
+    bool is_flow = event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
     if (r->is_sequence)
         return fail_at(r, line, "a sequence holds plain values, no mappings");
     if (r->depth > 0 && r->level[r->depth - 1].key[0] == '\0')
@@ -230,32 +279,56 @@ static int open_mapping(struct reader *r, int line)
                  r->depth > 1 ? r->level[1].key : "");
         BRC_TRY(add_section(r->ctx, r->c, name, r->level[r->depth - 1].line));
     }
-    r->level[r->depth].key[0] = '\0';
+    r->level[r->depth] = (struct level){.place = r->depth > 0 ? (int)r->c->n_sections - 1 : -1};
+    struct brc_case_place *place = place_of(r, &r->level[r->depth]);
+    place->form = is_flow ? BRC_CASE_FLOW : BRC_CASE_BLOCK;
+    place->indent = (int)event->start_mark.column;
+    r->begin = byte_at(r, &event->start_mark);
+    r->end = r->begin + is_flow;
     r->depth++;
     return 0;
 }
 
-static int close_mapping(struct reader *r)
+static int close_mapping(struct reader *r, const yaml_event_t *event)
 {
     r->depth--;
-    if (r->depth > 0)
+    const struct level *closed = &r->level[r->depth];
+    struct brc_case_place *place = place_of(r, closed);
+    place->end = r->end;
+    if (place->form == BRC_CASE_FLOW) {
+        if (!closed->has_values)
+            place->form = BRC_CASE_EMPTY;
+        end_value(r, &event->end_mark);
+    }
+    if (r->depth > 0) {
         r->level[r->depth - 1].key[0] = '\0';
+        r->level[r->depth - 1].has_values = true;
+    }
     return 0;
 }
 
-static int open_sequence(struct reader *r, int line)
+static int open_sequence(struct reader *r, const yaml_event_t *event, int line)
 {
+    int column = (int)event->start_mark.column;
     if (r->depth == 0)
         return fail_at(r, line, "a case file is a mapping, `key: value`; this is a sequence");
     if (r->is_sequence || r->level[r->depth - 1].key[0] == '\0')
         return fail_at(r, line, "a sequence must be the value of a key and hold plain values");
+    /* the dashes of a sequence may stand in the column of its key, another value may not */
+    int key = r->level[r->depth - 1].column;
+    bool is_flow = event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE;
+    r->begin = byte_at(r, &event->start_mark);
+    r->indent = is_flow || column > key ? 0 : key + 2 - column;
     r->is_sequence = true;
     r->sequence = brc_alloc(r->ctx, 1, 1);
     return r->sequence ? 0 : BRC_ERR_MEMORY;
 }
 
-static int close_sequence(struct reader *r)
+static int close_sequence(struct reader *r, const yaml_event_t *event)
 {
+    bool is_flow = r->c->text[r->begin] == '[';
+    if (is_flow)
+        end_value(r, &event->end_mark);
     int code = take_value(r, r->sequence, r->level[r->depth - 1].line);
     free(r->sequence);
     r->sequence = NULL;
@@ -300,13 +373,13 @@ static int take_event(struct reader *r, const yaml_event_t *event)
     case YAML_SCALAR_EVENT:
         return take_scalar(r, event, line);
     case YAML_MAPPING_START_EVENT:
-        return open_mapping(r, line);
+        return open_mapping(r, event, line);
     case YAML_MAPPING_END_EVENT:
-        return close_mapping(r);
+        return close_mapping(r, event);
     case YAML_SEQUENCE_START_EVENT:
-        return open_sequence(r, line);
+        return open_sequence(r, event, line);
     case YAML_SEQUENCE_END_EVENT:
-        return close_sequence(r);
+        return close_sequence(r, event);
     default:
         return 0;
     }
@@ -460,19 +533,6 @@ int brc_case_read(struct brc_context *ctx, const char *path, struct brc_case *c)
     return code;
 }
 
-/* Keeps an override as a comment line of the case's text. */
-static int note_override(struct brc_context *ctx, struct brc_case *c, const char *assignment)
-{
-    static const char mark[] = "# --set ";
-    size_t old = strlen(c->text);
-    char *longer = brc_realloc(ctx, c->text, old + strlen(assignment) + sizeof mark + 2, 1);
-    if (!longer)
-        return BRC_ERR_MEMORY;
-    c->text = longer;
-    sprintf(longer + old, "%s%s%s\n", old && longer[old - 1] != '\n' ? "\n" : "", mark, assignment);
-    return 0;
-}
-
 static int check_override(struct brc_context *ctx, const char *assignment, const char *equals)
 {
     const char *where = "--set";
@@ -509,7 +569,6 @@ int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *a
     if (*name[0] && !brc_case_find_section(c, name[0]))
         BRC_TRY(add_section(ctx, c, name[0], 0));
     BRC_TRY(add_entry(ctx, c, name, equals + 1 + strspn(equals + 1, " "), 0));
-    BRC_TRY(note_override(ctx, c, assignment));
     return read_top_level(ctx, c);
 }
 

@@ -43,20 +43,35 @@ struct brc_case_entry {
     char key[BRC_CASE_KEY_SIZE];     /* nested keys joined by _ */
     char parent[BRC_CASE_KEY_SIZE];  /* a of a: {rule: x}, else "" */
     char *text;
-    int line;         /* 1 is the first; 0: not from the file */
-    bool is_override; /* from --set */
+    int line;          /* 1 is the first; 0: not from the file */
+    bool is_override;  /* from --set */
+    size_t begin, end; /* bytes of the case's text that hold the value */
+    int indent;        /* blanks that a value without line breaks needs before it there */
+};
+
+/* How a mapping stands in the file. */
+enum brc_case_form {
+    BRC_CASE_ABSENT, /* by --set only */
+    BRC_CASE_NULL,   /* `vgcm:` */
+    BRC_CASE_EMPTY,  /* `vgcm: {}` */
+    BRC_CASE_FLOW,   /* `vgcm: {e_bar: 48.8 GPa}` */
+    BRC_CASE_BLOCK   /* keys on lines of their own */
 };
 
 /* Where a section, or a nested mapping "section.key", was opened. */
 struct brc_case_place {
     char name[2 * BRC_CASE_KEY_SIZE];
     int line; /* 0: by --set only */
+    enum brc_case_form form;
+    size_t begin, end; /* bytes: of a null value; else end is behind the last value */
+    int indent;        /* column of the keys */
 };
 
 /* A case file as read. Freed by brc_case_free, also after a failed read. */
 struct brc_case {
     char *path;
     char *text; /* raw, see brc_case_text */
+    struct brc_case_place root;
     struct brc_case_entry *entries;
     size_t n, cap;
     struct brc_case_place *sections;
@@ -88,8 +103,15 @@ const char *brc_case_where(const struct brc_case *c, int line, bool is_override,
 /* Judges the section names, after all sections were read. */
 int brc_case_finish(struct brc_context *ctx, const struct brc_case *c, const char *const *sections,
                     size_t n);
-/* The file's bytes, followed by one comment line per override. */
+/* The file's bytes; overrides are no part of them. */
 const char *brc_case_text(const struct brc_case *c);
+/* Gives a key, as the section's list calls it, this value in the text of a case without overrides:
+ * in its place where the file gives the key, else as the last of its section. All other bytes stay.
+ * The case is then the one that the new text makes. */
+int brc_case_write(struct brc_context *ctx, struct brc_case *c, const char *section,
+                   const char *key, struct brc_param_list list, const char *value);
+/* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
+const char *brc_case_key(const struct brc_case_entry *e, struct brc_param_list list);
 void brc_case_free(struct brc_case *c);
 
 #endif

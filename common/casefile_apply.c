@@ -25,8 +25,7 @@ const struct brc_case_place *brc_case_find_section(const struct brc_case *c, con
     return NULL;
 }
 
-/* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
-static const char *resolve_key(const struct brc_case_entry *e, struct brc_param_list list)
+const char *brc_case_key(const struct brc_case_entry *e, struct brc_param_list list)
 {
     bool is_short =
         *e->parent && !brc_params_find(list, e->key) && brc_params_find(list, e->parent);
@@ -38,7 +37,7 @@ const struct brc_case_entry *brc_case_find_entry(const struct brc_case *c, const
 {
     for (size_t i = c->n; i > 0; i--) { /* the last one holds */
         const struct brc_case_entry *e = &c->entries[i - 1];
-        if (strcmp(e->section, section) == 0 && strcmp(resolve_key(e, list), key) == 0)
+        if (strcmp(e->section, section) == 0 && strcmp(brc_case_key(e, list), key) == 0)
             return e;
     }
     return NULL;
@@ -47,11 +46,11 @@ const struct brc_case_entry *brc_case_find_entry(const struct brc_case *c, const
 /* Line of another entry of the file that means the same key, 0 when there is none. */
 static int find_twin(const struct brc_case *c, size_t i, struct brc_param_list list)
 {
-    const char *key = resolve_key(&c->entries[i], list);
+    const char *key = brc_case_key(&c->entries[i], list);
     for (size_t j = 0; j < i; j++) {
         const struct brc_case_entry *e = &c->entries[j];
         if (!e->is_override && strcmp(e->section, c->entries[i].section) == 0 &&
-            strcmp(resolve_key(e, list), key) == 0)
+            strcmp(brc_case_key(e, list), key) == 0)
             return e->line;
     }
     return 0;
@@ -67,7 +66,7 @@ static int check_required(struct brc_context *ctx, const struct brc_case *c, con
         bool is_given = p->default_text != NULL;
         for (size_t j = 0; j < c->n && !is_given; j++)
             is_given = strcmp(c->entries[j].section, section) == 0 &&
-                       strcmp(resolve_key(&c->entries[j], list), p->key) == 0;
+                       strcmp(brc_case_key(&c->entries[j], list), p->key) == 0;
         if (!is_given)
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "%s: %s.%s: required key is missing (%s); allowed %s, unit %s",
@@ -89,7 +88,7 @@ int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const ch
         const struct brc_case_entry *e = &c->entries[i];
         if (strcmp(e->section, section) != 0)
             continue;
-        const char *key = resolve_key(e, list);
+        const char *key = brc_case_key(e, list);
         int twin = e->is_override ? 0 : find_twin(c, i, list);
         brc_case_where(c, e->line, e->is_override, where);
         if (twin)

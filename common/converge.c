@@ -80,6 +80,7 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
     BRC_TRY(brc_sim_create(l->ctx, &sim, m->model, brc_job_params(job, m->model), specimen,
                            &job->test, &job->run));
     m->test = sim.rig.params;
+    m->specimen = brc_facets_hash(&specimen->facets);
     l->study.n_results = brc_rig_results(&sim, l->study.results);
     brc_sim_free(&sim);
     m->setting = brc_alloc(l->ctx, BRC_CONVERGE_MAX_SETTINGS, sizeof *m->setting);

@@ -49,7 +49,7 @@ struct brc_converge_setting {
     char axis[BRC_CASE_KEY_SIZE];
     enum brc_converge_role role;
     char label[128]; /* the key that the axis is about, and its value; no comma */
-    char text[512];  /* lines that override keys, as brc_case_text has them */
+    char text[512];  /* overrides "section.key=value", one a line */
     double fineness; /* on its ladder; the case has 1 */
     double weight;   /* expected cost over that of the case */
     struct brc_converge_run run[BRC_CONVERGE_MAX_SEEDS];
@@ -67,7 +67,8 @@ enum {
 struct brc_converge_model {
     const struct brc_model *model;
     struct brc_test_params test; /* with its automatic rates filled in */
-    double mean_rate; /* 1/s, of the case up to the peak, first specimen; 0: not run yet */
+    uint64_t specimen; /* hash of the case's own: what files that it names hold is a part of it */
+    double mean_rate;  /* 1/s, of the case up to the peak, first specimen; 0: not run yet */
     int n;
     struct brc_converge_setting *setting; /* BRC_CONVERGE_MAX_SETTINGS */
 };

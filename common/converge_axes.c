@@ -16,7 +16,8 @@ enum {
     N_CHOICES = sizeof choices / sizeof choices[0]
 };
 
-enum { COARSEST = 64 }; /* loading and rate, times that of the case */
+enum { MAX_LINES = 16 }; /* overrides of a run */
+enum { COARSEST = 64 };  /* loading and rate, times that of the case */
 static const double REFERENCE_STEP = 0.5;
 
 /* ---- names --------------------------------------------------------------------------------- */
@@ -97,7 +98,7 @@ int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_or
 static void add_line(struct brc_converge_setting *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* An override. */
+/* An override, a line of the setting's text. */
 static void add_line(struct brc_converge_setting *s, const char *format, ...)
 {
     char line[160];
@@ -106,43 +107,42 @@ static void add_line(struct brc_converge_setting *s, const char *format, ...)
     vsnprintf(line, sizeof line, format, args);
     va_end(args);
     size_t used = strlen(s->text);
-    snprintf(s->text + used, sizeof s->text - used, "# --set %s\n", line);
+    snprintf(s->text + used, sizeof s->text - used, "%s\n", line);
 }
 
 int brc_converge_job(struct brc_context *ctx, const struct brc_job *job,
                      const struct brc_converge_setting *s, int i, struct brc_job *out)
 {
-    const char *base = brc_case_text(&job->file);
-    size_t n = strlen(base), size = n + strlen(s->text) + 256;
-    char *text = brc_alloc(ctx, size, 1);
-    *out = (struct brc_job){0};
-    if (!text)
-        return BRC_ERR_MEMORY;
     /* files for a look at a run are not wanted */
-    snprintf(text, size,
-             "%s%s%s# --set specimen.seed=%d\n# --set output.plots=off\n# --set output.frames=0\n"
-             "# --set output.frame_strain=0\n# --set output.frame_steps=0\n",
-             base, n > 0 && base[n - 1] != '\n' ? "\n" : "", s->text, job->specimen.seed + i);
-    int code = brc_job_parse(ctx, out, job->file.path, text);
-    free(text);
-    return code;
+    const char *line[MAX_LINES] = {"output.plots=off", "output.frames=0", "output.frame_strain=0",
+                                   "output.frame_steps=0"};
+    char text[sizeof s->text], seed[64], *rest = text;
+    int n = 4;
+    snprintf(seed, sizeof seed, "specimen.seed=%d", job->specimen.seed + i);
+    line[n++] = seed;
+    memcpy(text, s->text, sizeof text);
+    while (n < MAX_LINES && (line[n] = strtok_r(rest, "\n", &rest)))
+        n++;
+    return brc_job_change(ctx, job, line, n, out);
 }
 
 static int make_key(struct brc_context *ctx, const struct brc_job *job,
-                    const struct brc_model *model, uint64_t *key)
+                    const struct brc_converge_model *m, uint64_t *key)
 {
+    const struct brc_model *model = m->model;
     char *text = brc_job_text(ctx, job, model);
     if (!text)
         return BRC_ERR_MEMORY;
     *key = brc_hash_bytes(text, strlen(text), brc_hash_bytes(model->name, strlen(model->name), 0));
     *key = brc_hash_bytes(BRC_VERSION, strlen(BRC_VERSION), *key);
+    *key = brc_hash_bytes(&m->specimen, sizeof m->specimen, *key);
     free(text);
     return 0;
 }
 
 /* Judges the setting on all specimens; *is_good tells whether its values are in range. */
 static int check(struct brc_context *ctx, const struct brc_converge_order *order,
-                 const struct brc_model *model, struct brc_converge_setting *s, bool *is_good)
+                 const struct brc_converge_model *m, struct brc_converge_setting *s, bool *is_good)
 {
     *is_good = true;
     for (int i = 0; i < order->seeds && *is_good; i++) {
@@ -150,7 +150,7 @@ static int check(struct brc_context *ctx, const struct brc_converge_order *order
         struct brc_job job;
         int code = brc_converge_job(&own, order->job, s, i, &job);
         if (code == 0)
-            code = make_key(&own, &job, model, &s->run[i].key);
+            code = make_key(&own, &job, m, &s->run[i].key);
         brc_job_free(&job);
         if (code == BRC_ERR_INPUT) {
             brc_log(ctx, "%s %s is left out: %s", s->axis, s->label, own.message);
@@ -170,7 +170,7 @@ static int add(struct brc_context *ctx, const struct brc_converge_order *order,
         BRC_FAIL(ctx, BRC_ERR_INPUT, "more than %d settings of %s; name fewer axes", m->n,
                  m->model->name);
     m->setting[m->n] = *s;
-    BRC_TRY(check(ctx, order, m->model, &m->setting[m->n], &is_good));
+    BRC_TRY(check(ctx, order, m, &m->setting[m->n], &is_good));
     m->n += is_good;
     return 0;
 }

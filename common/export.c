@@ -28,15 +28,21 @@ static void unload(struct loaded *l)
     brc_job_free(&l->job);
 }
 
+/* The model of a state. */
+static int read_model(struct brc_context *ctx, const char *path, const struct brc_model **model)
+{
+    char *name;
+    BRC_TRY(brc_h5_read_text(ctx, path, "model", &name));
+    int code = brc_job_model(ctx, name, model);
+    free(name);
+    return code;
+}
+
 static int load_sim(struct brc_context *ctx, const char *path, struct loaded *l)
 {
     static const struct brc_h5_extra none = {NULL, 0, NULL, 0};
     const struct brc_model *model;
-    char *name;
-    BRC_TRY(brc_h5_read_text(ctx, path, "model", &name));
-    int code = brc_job_model(ctx, name, &model);
-    free(name);
-    BRC_TRY(code);
+    BRC_TRY(read_model(ctx, path, &model));
     BRC_TRY(brc_specimen_create(ctx, &l->job.specimen, &l->specimen));
     BRC_TRY(brc_sim_create(ctx, &l->sim, model, brc_job_params(&l->job, model), &l->specimen,
                            &l->job.test, &l->job.run));
@@ -88,37 +94,41 @@ static int put_table(struct brc_context *ctx, FILE *out, const void *what)
     return 0;
 }
 
-static int find_table(struct brc_context *ctx, struct brc_sim *sim, const char *name,
-                      const struct brc_table **table)
+static int find_table(struct brc_context *ctx, struct brc_state *state, const char *name,
+                      struct brc_state_part **found)
 {
-    struct brc_state state;
     char all[400] = "";
-    *table = NULL;
-    brc_state_list(sim, &state);
-    for (int i = 0; i < state.n; i++) {
-        const struct brc_state_part *part = &state.part[i];
+    *found = NULL;
+    for (int i = 0; i < state->n; i++) {
+        struct brc_state_part *part = &state->part[i];
         size_t used = strlen(all);
         if (!part->table || part->set.n == 0)
             continue;
         if (strcmp(part->path, name) == 0)
-            *table = part->table;
+            *found = part;
         snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", part->path);
     }
-    if (!*table)
+    if (!*found)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "no table '%.60s'; there are: %s", name, all);
     return 0;
 }
 
+/* Straight from the file: neither the case nor the files that it names are needed. */
 int brc_export_table(struct brc_context *ctx, const char *path, const char *table, const char *out)
 {
-    struct loaded l;
-    const struct brc_table *found;
-    int code = load(ctx, path, &l);
+    const struct brc_model *model;
+    struct brc_sim sim;
+    struct brc_state state;
+    struct brc_state_part *part;
+    BRC_TRY(read_model(ctx, path, &model));
+    BRC_TRY(brc_sim_tables(ctx, &sim, model));
+    brc_state_list(&sim, &state);
+    int code = find_table(ctx, &state, table, &part);
     if (code == 0)
-        code = find_table(ctx, &l.sim, table, &found);
+        code = brc_h5_load_table(ctx, path, part);
     if (code == 0)
-        code = write_to(ctx, out, &(struct target){put_table, found});
-    unload(&l);
+        code = write_to(ctx, out, &(struct target){put_table, part->table});
+    brc_sim_free(&sim);
     return code;
 }
 

@@ -249,6 +249,16 @@ int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,
     return code;
 }
 
+int brc_h5_load_table(struct brc_context *ctx, const char *path, struct brc_state_part *part)
+{
+    struct brc_h5_file f;
+    part->is_fixed = false;
+    BRC_TRY(brc_h5_open_sealed(ctx, path, BRC_H5_FORMAT, &f));
+    int code = read_part(&f, part);
+    brc_h5_close(&f);
+    return code;
+}
+
 int brc_h5_read_text(struct brc_context *ctx, const char *path, const char *name, char **text)
 {
     struct brc_h5_file f;

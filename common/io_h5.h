@@ -7,8 +7,8 @@
 #include "h5.h"
 #include "state.h"
 
-/* 2: sealed, see seal.h; with a hash of the specimen */
-enum { BRC_H5_FORMAT = 2 };
+/* 2: sealed, see seal.h; with a hash of the specimen. 3: the case holds its overrides as values. */
+enum { BRC_H5_FORMAT = 3 };
 
 /* A text of the group /provenance. */
 struct brc_h5_text {
@@ -35,6 +35,9 @@ int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text 
  * is an error, too. */
 int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra);
+/* Replaces the rows of one table, a part as brc_state_list gives it, by those of a file; needs
+ * neither the case nor its specimen. */
+int brc_h5_load_table(struct brc_context *ctx, const char *path, struct brc_state_part *part);
 /* A text of /provenance; *text is allocated, to be freed by the caller. */
 int brc_h5_read_text(struct brc_context *ctx, const char *path, const char *name, char **text);
 

@@ -64,47 +64,61 @@ static int judge(struct brc_context *ctx, struct brc_job *job)
     return brc_case_finish(ctx, &job->file, names, (size_t)i);
 }
 
-int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
-                 const char *const *overrides, int n)
+static int start(struct brc_context *ctx, struct brc_job *job, const char *path)
 {
     memset(job, 0, sizeof *job);
     take_name(job, path);
-    BRC_TRY(make_room(ctx, job));
-    BRC_TRY(brc_case_read(ctx, path, &job->file));
-    for (int k = 0; k < n; k++)
-        BRC_TRY(brc_case_override(ctx, &job->file, overrides[k]));
-    return judge(ctx, job);
+    return make_room(ctx, job);
 }
 
-/* The comment lines that brc_case_override has left, in their order. */
-static int repeat_overrides(struct brc_context *ctx, struct brc_job *job, const char *text)
+/* Reads on from the case itself. */
+static int finish(struct brc_context *ctx, struct brc_job *job, const char *const *overrides, int n)
 {
-    static const char mark[] = "# --set ";
-    int code = 0;
-    for (const char *line = text; code == 0 && *line;) {
-        size_t n = strcspn(line, "\n");
-        if (strncmp(line, mark, sizeof mark - 1) == 0) {
-            size_t length = n - (sizeof mark - 1);
-            char *assignment = brc_alloc(ctx, length + 1, 1);
-            if (!assignment)
-                return BRC_ERR_MEMORY;
-            memcpy(assignment, line + sizeof mark - 1, length);
-            code = brc_case_override(ctx, &job->file, assignment);
-            free(assignment);
-        }
-        line += n + (line[n] != '\0');
-    }
+    for (int k = 0; k < n; k++)
+        BRC_TRY(brc_case_override(ctx, &job->file, overrides[k]));
+    BRC_TRY(judge(ctx, job));
+    return brc_job_find_files(ctx, job);
+}
+
+int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
+                 const char *const *overrides, int n)
+{
+    BRC_TRY(start(ctx, job, path));
+    BRC_TRY(brc_case_read(ctx, path, &job->file));
+    return finish(ctx, job, overrides, n);
+}
+
+int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *path, const char *text)
+{
+    BRC_TRY(start(ctx, job, path));
+    BRC_TRY(brc_case_parse(ctx, path, text, strlen(text), &job->file));
+    return finish(ctx, job, NULL, 0);
+}
+
+static int repeat_override(struct brc_context *ctx, struct brc_case *c,
+                           const struct brc_case_entry *e)
+{
+    size_t size = strlen(e->text) + 3 * BRC_CASE_KEY_SIZE;
+    char *assignment = brc_alloc(ctx, size, 1);
+    if (!assignment)
+        return BRC_ERR_MEMORY;
+    snprintf(assignment, size, "%s%s%s%s=%s", e->section, *e->section ? "." : "",
+             *e->parent ? e->parent : e->key, *e->parent ? ".rule" : "", e->text);
+    int code = brc_case_override(ctx, c, assignment);
+    free(assignment);
     return code;
 }
 
-int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *name, const char *text)
+int brc_job_change(struct brc_context *ctx, const struct brc_job *job, const char *const *overrides,
+                   int n, struct brc_job *out)
 {
-    memset(job, 0, sizeof *job);
-    take_name(job, name);
-    BRC_TRY(make_room(ctx, job));
-    BRC_TRY(brc_case_parse(ctx, name, text, strlen(text), &job->file));
-    BRC_TRY(repeat_overrides(ctx, job, text));
-    return judge(ctx, job);
+    const char *text = brc_case_text(&job->file);
+    BRC_TRY(start(ctx, out, job->file.path));
+    BRC_TRY(brc_case_parse(ctx, job->file.path, text, strlen(text), &out->file));
+    for (size_t i = 0; i < job->file.n; i++)
+        if (job->file.entries[i].is_override)
+            BRC_TRY(repeat_override(ctx, &out->file, &job->file.entries[i]));
+    return finish(ctx, out, overrides, n);
 }
 
 void brc_job_free(struct brc_job *job)
@@ -166,6 +180,8 @@ static char *add_section(struct brc_context *ctx, char *text, const char *sectio
     }
     grown[used] = '\0';
     for (int i = 0; i < list.n; i++) {
+        if (brc_job_names_file(section, &list.params[i]))
+            continue;
         brc_params_text(&list.params[i], values, value, sizeof value);
         int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
         memcpy(grown + used, line, (size_t)n + 1);

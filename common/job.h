@@ -21,12 +21,21 @@ struct brc_job {
     void *model_params[BRC_JOB_MAX_MODELS]; /* one filled struct a registered model; owned */
 };
 
-/* Reads a case with n overrides "section.key=value". Freed by brc_job_free, also after a failure.
- */
+/* Reads a case with n overrides "section.key=value". Files that the case names are looked up from
+ * the folder of the case file (from the working folder when the case comes through a pipe), those
+ * of overrides from the working folder. Freed by brc_job_free, also after a failure. */
 int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
                  const char *const *overrides, int n);
-/* The same from the text of a case with its overrides, as brc_case_text gives it. */
-int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *name, const char *text);
+/* The same from a text that path names, without overrides. */
+int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *path, const char *text);
+/* The job with n further overrides. */
+int brc_job_change(struct brc_context *ctx, const struct brc_job *job, const char *const *overrides,
+                   int n, struct brc_job *out);
+/* The text of a case in the folder dir, which is there, that makes this job with the model, without
+ * any option: overrides are values in it, and files are named as dir sees them. Else it is the
+ * user's text. Allocated, to be freed by the caller. */
+int brc_job_keep(struct brc_context *ctx, const struct brc_job *job, const struct brc_model *model,
+                 const char *dir, char **text);
 void brc_job_free(struct brc_job *job);
 /* A registered model by name; an unknown one is an error that lists all. */
 int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model);
@@ -36,7 +45,8 @@ int brc_job_models(struct brc_context *ctx, const struct brc_job *job,
 /* The filled parameters of a model. */
 const void *brc_job_params(const struct brc_job *job, const struct brc_model *model);
 /* All parameters that a run's states depend on, one "section.key = value" a line; allocated, to be
- * freed by the caller, NULL when out of memory. */
+ * freed by the caller, NULL when out of memory. Names of files are left out: what counts is their
+ * content, which the specimen's hash tells. */
 char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
                    const struct brc_model *model);
 /* Fails when two such texts differ in more than the conditions that end a run, naming the first
@@ -46,6 +56,11 @@ int brc_job_same(struct brc_context *ctx, const char *saved, const char *now);
 /* Puts "file:line: " before a message about bad input that names a key as section.key: where the
  * case gives that key, or its section, its value. For failures after brc_job_read. */
 void brc_job_locate(struct brc_context *ctx, const struct brc_job *job);
+
+/* The key holds the name of a file. */
+bool brc_job_names_file(const char *section, const struct brc_param *p);
+/* Names of files of the filled job as the working folder sees them. Done by brc_job_read. */
+int brc_job_find_files(struct brc_context *ctx, struct brc_job *job);
 
 /* The sections that every case may have, and those of the models: name and list of number i, false
  * past the last. */

@@ -84,6 +84,12 @@ static void set_platen_velocities(struct brc_sim *sim)
                   rig->sense * 0.5 * rig->rate * rig->length);
 }
 
+void brc_rig_start_curve(struct brc_sim *sim)
+{
+    struct brc_fieldset set = BRC_FIELDSET(curve_fields, struct brc_curve);
+    brc_table_init(&sim->rig.curve.table, "curve", set, &sim->rig.curve);
+}
+
 int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
 {
     struct brc_rig *rig = &sim->rig;
@@ -95,8 +101,6 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     rig->n_platens = brc_rig_platens(test);
     rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
     rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;
-    struct brc_fieldset curve = BRC_FIELDSET(curve_fields, struct brc_curve);
-    brc_table_init(&rig->curve.table, "curve", curve, &rig->curve);
     double low[3], high[3], at[3];
     brc_specimen_extent(sim->specimen, low, high);
     rig->length = high[rig->axis] - low[rig->axis];

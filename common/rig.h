@@ -78,6 +78,8 @@ struct brc_result {
 };
 enum { BRC_MAX_RESULTS = 24 };
 
+/* A curve without a row. */
+void brc_rig_start_curve(struct brc_sim *sim);
 /* Number of platens of a test. */
 int brc_rig_platens(const struct brc_test_params *test);
 /* Places the platen bodies at the specimen's ends and gives them and the grains the

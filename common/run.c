@@ -42,7 +42,7 @@ struct run {
     struct brc_sim sim;
     struct counts counts;
     struct brc_frames frames;
-    char *parameters, seed[16]; /* as texts, for the files */
+    char *case_text, *parameters, seed[16]; /* for the files */
     FILE *log;
     size_t n_active; /* contacts with a spring at the last count */
     double cpu_before, wall_before;
@@ -185,7 +185,7 @@ static int replace_old(struct run *r)
 {
     char path[PATH_SIZE];
     BRC_TRY(in_folder(r->ctx, r->order->dir, "case.yaml", path));
-    BRC_TRY(brc_output_text(r->ctx, path, brc_case_text(&r->order->job->file)));
+    BRC_TRY(brc_output_text(r->ctx, path, r->case_text));
     for (int i = 0; i < N_RESULT_FILES; i++) {
         BRC_TRY(in_folder(r->ctx, r->order->dir, result_files[i], path));
         if (unlink(path) != 0 && errno != ENOENT)
@@ -240,7 +240,7 @@ struct extra {
 static void make_extra(struct run *r, struct extra *e)
 {
     const struct brc_job *job = r->order->job;
-    *e = (struct extra){.texts = {{"case", brc_case_text(&job->file)},
+    *e = (struct extra){.texts = {{"case", r->case_text},
                                   {"case_name", job->name},
                                   {"parameters", r->parameters},
                                   {"seed", r->seed}},
@@ -486,6 +486,7 @@ static int prepare(struct run *r)
     BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_job_params(o->job, o->model), o->specimen,
                            &o->job->test, &o->job->run));
     BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
+    BRC_TRY(brc_job_keep(r->ctx, o->job, o->model, o->dir, &r->case_text));
     BRC_TRY(open_log(r));
     bool has_state = o->is_resumed && is_there(o->dir, "state.h5");
     BRC_TRY(has_state ? load(r) : replace_old(r));
@@ -532,6 +533,7 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
                              r.sim.step, order->dir);
     brc_sim_free(&r.sim);
     brc_frames_free(&r.frames);
+    free(r.case_text);
     free(r.parameters);
     if (r.log)
         fclose(r.log);

@@ -275,6 +275,32 @@ static void choose_damped(struct brc_sim *sim, const struct brc_test_params *tes
     sim->damping_alpha = sim->run.regime == BRC_QUASI_STATIC ? alpha : 0;
 }
 
+/* Tables of all parts of the state: rows for the bodies, none of the others. */
+static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
+{
+    const struct brc_model *m = &sim->model;
+    size_t n = n_grains + n_platens;
+    brc_rig_start_curve(sim);
+    BRC_TRY(brc_bodies_create(sim->ctx, &sim->bodies, n_grains, n_platens, m->body_fields));
+    BRC_TRY(
+        brc_contacts_create(sim->ctx, &sim->pairs, "pairs", n, m->contact_fields, m->point_fields));
+    return brc_contacts_create(sim->ctx, &sim->platens, "platens", n, m->contact_fields,
+                               m->point_fields);
+}
+
+int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model)
+{
+    memset(sim, 0, sizeof *sim);
+    sim->ctx = ctx;
+    brc_events_init(&sim->events);
+    int code = brc_model_complete(ctx, model, &sim->model);
+    if (code == 0)
+        code = make_tables(sim, 0, 0);
+    if (code != 0)
+        brc_sim_free(sim);
+    return code;
+}
+
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
                    const void *params, const struct brc_specimen *specimen,
                    const struct brc_test_params *test, const struct brc_run_params *run)
@@ -296,14 +322,7 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     if (code == 0 && m->params.owner_size > 0)
         memcpy(sim->params, params, m->params.owner_size);
     if (code == 0)
-        code = brc_bodies_create(ctx, &sim->bodies, n_grains, n_platens, m->body_fields);
-    size_t n = n_grains + n_platens;
-    if (code == 0)
-        code =
-            brc_contacts_create(ctx, &sim->pairs, "pairs", n, m->contact_fields, m->point_fields);
-    if (code == 0)
-        code = brc_contacts_create(ctx, &sim->platens, "platens", n, m->contact_fields,
-                                   m->point_fields);
+        code = make_tables(sim, n_grains, n_platens);
     if (code == 0 && m->point_lanes > 0)
         sim->pairs.lanes = sim->platens.lanes = m->point_lanes;
     if (code == 0)

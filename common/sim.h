@@ -132,6 +132,9 @@ extern const int brc_sim_n_scalars;
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
                    const void *params, const struct brc_specimen *specimen,
                    const struct brc_test_params *test, const struct brc_run_params *run);
+/* The tables of a model's state without a row, for reading files; nothing else of it may be used.
+ */
+int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model);
 void brc_sim_free(struct brc_sim *sim);
 /* Forces of all contacts after a motion, and their sums on the bodies: part of a step. */
 void brc_sim_forces(struct brc_sim *sim);

@@ -99,7 +99,7 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
     says "model          $model" "$breccia" info "$state"
     says "seed           5" "$breccia" info "$state"
     says "x(3)                   float64  [m]  centre of mass" "$breccia" info "$state"
-    says "  # --set specimen.seed=5" "$breccia" info "$state"
+    says "jitter: 0.6, seed: 5}" "$breccia" info "$state"
     says "frame (VTKHDF) of breccia, step 0" "$breccia" info "$model/frames/grains_00000.hdf"
     for table in curve events; do
         "$breccia" export "$state" --table $table | cmp -s - "$model/$table.csv" ||

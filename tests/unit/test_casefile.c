@@ -126,14 +126,129 @@ static void overrides_hold(void **state)
     assert_string_equal(m.note, "a=b.c");
     assert_string_equal(c.head.model, "polyhedra");
     assert_int_equal(c.n_models, 2);
-    assert_string_equal(brc_case_text(&c), "breccia: 1\nmodel: vgcm\nvgcm: {e_bar: 50 GPa}\n"
-                                           "# --set vgcm.e_bar=1 GPa\n"
-                                           "# --set vgcm.e_bar= 60 GPa\n"
-                                           "# --set vgcm.interaction.rule=area\n"
-                                           "# --set vgcm.note=a=b.c\n"
-                                           "# --set model=polyhedra\n"
-                                           "# --set models=a, b\n");
+    assert_string_equal(brc_case_text(&c), text);
     brc_case_free(&c);
+}
+
+/* A text in which e_bar of vgcm is written over: what it becomes, and that it reads back. */
+static void check_write(const char *text, const char *key, const char *value, const char *expected)
+{
+    struct brc_case c;
+    bool is_top = brc_params_find(brc_case_param_list, key) != NULL;
+    const char *section = is_top ? "" : "vgcm";
+    const struct brc_param_list list = is_top ? brc_case_param_list : model_list;
+    CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text, strlen(text), &c));
+    CHECK_OK(&ctx, brc_case_write(&ctx, &c, section, key, list, value));
+    assert_string_equal(brc_case_text(&c), expected);
+    const struct brc_case_entry *e = brc_case_find_entry(&c, section, key, list);
+    assert_non_null(e);
+    assert_string_equal(e->text, value);
+    brc_case_free(&c);
+}
+
+static void values_are_written_in_their_place(void **state)
+{
+    (void)state;
+    /* everything else stays, comments of any kind included */
+    check_write(
+        "# --set a=b\nbreccia: 1\nvgcm:\n  # stiff\n  e_bar:   50 GPa  # was 40\n  note: x\n",
+        "e_bar", "60 GPa",
+        "# --set a=b\nbreccia: 1\nvgcm:\n  # stiff\n  e_bar:   60 GPa  # was 40\n  note: x\n");
+    check_write("breccia: 1\nvgcm: {e_bar: \"50 GPa\"#c\n}\n", "e_bar", "6 Pa",
+                "breccia: 1\nvgcm: {e_bar: 6 Pa #c\n}\n");
+    check_write("breccia: 1\nvgcm: {\"e_bar\":'50 GPa', note: x}", "e_bar", "6 Pa",
+                "breccia: 1\nvgcm: {\"e_bar\":6 Pa, note: x}");
+    check_write("{breccia: 1, vgcm: {note: \xc3\xa4\xe2\x82\xac, e_bar: 1 Pa}}", "e_bar", "6 Pa",
+                "{breccia: 1, vgcm: {note: \xc3\xa4\xe2\x82\xac, e_bar: 6 Pa}}");
+    /* values of several lines, and sequences */
+    check_write("breccia: 1\nvgcm:\n  note: \"a\n    b\"\n  e_bar: 1 Pa\n", "note", "c",
+                "breccia: 1\nvgcm:\n  note: c\n  e_bar: 1 Pa\n");
+    check_write("breccia: 1\nvgcm:\n  note: >-\n    a\n    b\n\n  e_bar: 1 Pa\n", "note", "c",
+                "breccia: 1\nvgcm:\n  note: c\n\n  e_bar: 1 Pa\n");
+    check_write("breccia: 1\nvgcm:\n  size: [1 m, # x\n    2 m, 3 m] # y\n", "size",
+                "1 m, 1 m, 1 m", "breccia: 1\nvgcm:\n  size: \"1 m, 1 m, 1 m\" # y\n");
+    check_write("breccia: 1\nvgcm:\n  size:\n  - 1 m\n  - 2 m\n  - 3 m\n  # y\n  note: x\n", "size",
+                "1 m, 1 m, 1 m",
+                "breccia: 1\nvgcm:\n  size:\n    \"1 m, 1 m, 1 m\"\n  # y\n  note: x\n");
+    check_write("breccia: 1\nvgcm:\n  size:\n      - 1 m\n      - 2 m\n      - 3 m", "size", "1 m",
+                "breccia: 1\nvgcm:\n  size:\n      1 m");
+    /* a: {rule: x} stands for a */
+    check_write("breccia: 1\nvgcm: {interaction: {rule: gap, gap: 1 mm}}\n", "interaction", "area",
+                "breccia: 1\nvgcm: {interaction: {rule: area, gap: 1 mm}}\n");
+    check_write("breccia: 1\ntitle: x # y\n", "title", "a: #1 \"b\" \\ c",
+                "breccia: 1\ntitle: \"a: #1 \\\"b\\\" \\\\ c\" # y\n");
+}
+
+static void keys_are_added_to_their_section(void **state)
+{
+    (void)state;
+    check_write("breccia: 1\nvgcm:\n    note: x # y\n\nstrict:\n  load: 1 N\n", "e_bar", "6 Pa",
+                "breccia: 1\nvgcm:\n    note: x # y\n    e_bar: 6 Pa\n\nstrict:\n  load: 1 N\n");
+    check_write("breccia: 1\r\nvgcm:\r\n  note: x\r\n", "e_bar", "6 Pa",
+                "breccia: 1\r\nvgcm:\r\n  note: x\r\n  e_bar: 6 Pa\r\n");
+    check_write("breccia: 1\nvgcm: {note: x,}\n", "e_bar", "6 Pa",
+                "breccia: 1\nvgcm: {note: x, e_bar: 6 Pa,}\n");
+    check_write("breccia: 1\nvgcm: {}\n", "e_bar", "6 Pa", "breccia: 1\nvgcm: {e_bar: 6 Pa}\n");
+    check_write("breccia: 1\nvgcm: {# y\n}\n", "e_bar", "6 Pa",
+                "breccia: 1\nvgcm: {e_bar: 6 Pa # y\n}\n");
+    check_write("breccia: 1\nvgcm: # y\nstrict: {}\n", "e_bar", "6 Pa",
+                "breccia: 1\nvgcm: {e_bar: 6 Pa} # y\nstrict: {}\n");
+    check_write("breccia: 1\nvgcm: ~", "e_bar", "6 Pa", "breccia: 1\nvgcm:  {e_bar: 6 Pa}");
+    check_write("{breccia: 1, vgcm: }", "e_bar", "6 Pa", "{breccia: 1, vgcm:  {e_bar: 6 Pa}}");
+    check_write("breccia: 1 # y", "e_bar", "6 Pa", "breccia: 1 # y\nvgcm: {e_bar: 6 Pa}");
+    check_write("{breccia: 1}", "e_bar", "6 Pa", "{breccia: 1, vgcm: {e_bar: 6 Pa}}");
+    check_write("--- \n  breccia: 1\n  strict:\n    load: 1 N\n...\n", "e_bar", "6 Pa",
+                "--- \n  breccia: 1\n  strict:\n    load: 1 N\n  vgcm: {e_bar: 6 Pa}\n...\n");
+    check_write("breccia: 1\nvgcm: {interaction: {gap: 1 mm}}\n", "interaction", "area",
+                "breccia: 1\nvgcm: {interaction: {gap: 1 mm, rule: area}}\n");
+    check_write("breccia: 1\n", "model", "vgcm", "breccia: 1\nmodel: vgcm\n");
+}
+
+/* Values that YAML would read as something else. */
+static void every_value_reads_back(void **state)
+{
+    static const char *const value[] = {"",
+                                        "null",
+                                        "~",
+                                        " a ",
+                                        "-",
+                                        "- a",
+                                        "--- a",
+                                        "?",
+                                        "a: b",
+                                        "a #b",
+                                        "{a}",
+                                        "[a",
+                                        "'a'",
+                                        "\"",
+                                        "\\u0041",
+                                        "&a",
+                                        "*a",
+                                        "!a",
+                                        "%a",
+                                        "@a",
+                                        "`a`",
+                                        "a,b",
+                                        "\xe2\x80\xa8",
+                                        "a\xe2\x80\xa9 b",
+                                        "\xef\xbf\xbf",
+                                        "\xef\xbf\xbe",
+                                        "\xc3\xa4",
+                                        "1e-3",
+                                        "-.5 GPa",
+                                        "../a-b_c.tess"};
+    (void)state;
+    for (size_t i = 0; i < sizeof value / sizeof value[0]; i++) {
+        struct brc_case c;
+        const char *texts[] = {"breccia: 1\nvgcm: {note: x, e_bar: 1 Pa}\n", "breccia: 1\n"};
+        for (int k = 0; k < 2; k++) {
+            CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", texts[k], strlen(texts[k]), &c));
+            CHECK_OK(&ctx, brc_case_write(&ctx, &c, "vgcm", "note", model_list, value[i]));
+            assert_string_equal(brc_case_find_entry(&c, "vgcm", "note", model_list)->text,
+                                value[i]);
+            brc_case_free(&c);
+        }
+    }
 }
 
 static void check_bad_override(const char *assignment, int code, const char *message)
@@ -369,12 +484,72 @@ static void damage_is_survived(void **state)
     assert_true(n_failed > 10000);
 }
 
+/* Writes a key into the case that a text makes: that key reads back, all others are as before. */
+static void check_only_one_changes(const struct brc_case *before, const char *key,
+                                   const char *value)
+{
+    struct brc_case c;
+    const char *text = brc_case_text(before);
+    CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text, strlen(text), &c));
+    CHECK_OK(&ctx, brc_case_write(&ctx, &c, "vgcm", key, model_list, value));
+    const struct brc_case_entry *now = brc_case_find_entry(&c, "vgcm", key, model_list);
+    assert_non_null(now);
+    assert_string_equal(now->text, value);
+    const struct brc_case_entry *old = brc_case_find_entry(before, "vgcm", key, model_list);
+    assert_int_equal(c.n, before->n + (old == NULL));
+    for (size_t i = 0; i < before->n; i++) {
+        const struct brc_case_entry *e = &before->entries[i], *same = NULL;
+        for (size_t k = 0; k < c.n; k++)
+            if (strcmp(e->section, c.entries[k].section) == 0 &&
+                strcmp(e->key, c.entries[k].key) == 0)
+                same = &c.entries[k];
+        assert_true(e == old || (same && strcmp(same->text, e->text) == 0));
+    }
+    brc_case_free(&c);
+}
+
+/* Whatever layout YAML allows. */
+static void odd_layouts_take_values(void **state)
+{
+    static const char *const good[] = {
+        "breccia: 1\ntitle: 'a'\nvgcm:\n  e_bar: 50 GPa #c\n  interaction:\n    gap: 1 mm\n",
+        "breccia: 1\nvgcm: {e_bar: \"50 GPa\", interaction: {rule: gap, gap: 1 mm}}\n#c\nstrict:\n",
+        "breccia: 1\nvgcm:\n  size:\n  - 1 m\n  - 2 m\n  - 3 m\n  note: >-\n    a\n\n    b\nmodel: "
+        "x"};
+    static const char bytes[] = "{}[]:,?|>'\"`#- \n\n \t\raZ.~";
+    uint64_t seed = 7;
+    int n_good = 0;
+    (void)state;
+    for (int i = 0; i < 60000; i++) {
+        struct brc_case c;
+        char text[256];
+        size_t n = strlen(good[i % 3]);
+        memcpy(text, good[i % 3], n + 1);
+        for (int k = 0; k < 1 + i % 4; k++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            text[(seed >> 33) % n] = bytes[(seed >> 20) % (sizeof bytes - 1)];
+        }
+        if (brc_case_parse(&ctx, "c.yaml", text, n, &c) == 0) {
+            check_only_one_changes(&c, "e_bar", "60 GPa");
+            check_only_one_changes(&c, "note", "a: #b");
+            n_good++;
+        }
+        brc_error_clear(&ctx);
+        brc_case_free(&c);
+    }
+    assert_true(n_good > 5000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(case_is_read),
         cmocka_unit_test(spellings_agree),
         cmocka_unit_test(overrides_hold),
+        cmocka_unit_test(values_are_written_in_their_place),
+        cmocka_unit_test(keys_are_added_to_their_section),
+        cmocka_unit_test(every_value_reads_back),
+        cmocka_unit_test(odd_layouts_take_values),
         cmocka_unit_test(bad_overrides_are_named),
         cmocka_unit_test(top_level_errors),
         cmocka_unit_test(section_errors),

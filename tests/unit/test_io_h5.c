@@ -246,7 +246,7 @@ static void test_other_format(void **state)
     save(f, path);
     seal(path, BRC_H5_FORMAT + 1, BRC_SEAL_SIZE);
     CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_INPUT,
-                "has the state format 3, breccia " BRC_VERSION " reads 2");
+                "has the state format 4, breccia " BRC_VERSION " reads 3");
     unlink(path);
 }
 
