@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly.h"
 
+#include "common/oblique.h"
 #include "common/simd.h"
 
 #include <stdio.h>
@@ -18,6 +19,22 @@ static const struct brc_field row_fields[] = {POLY_ROW_FIELDS(BRC_FIELD, BRC_FIE
 static const struct brc_field point_fields[] = {POLY_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
+/* Bonds stretch along the lines of centres: where facets are oblique to these, the stiffness by
+ * direction is not that of the bonds' medium. Cells and their centroids are always a little so. */
+static const double GOOD_PART = 0.1;
+
+static void warn_oblique(const struct brc_context *ctx, const struct brc_facets *f)
+{
+    struct brc_oblique o;
+    brc_oblique_measure(&o, f, f->centre, false);
+    if (o.soft < 1 - GOOD_PART || o.stiff > 1 / (1 - GOOD_PART))
+        brc_log(ctx,
+                "warning: facets are oblique to the lines of centres (mean cosine %.3f): under a "
+                "uniform strain the bonds of polyhedra are %.3g to %.3g times as stiff as the "
+                "medium that they stand for, by direction",
+                o.mean_cos, o.soft, o.stiff);
+}
+
 static int check(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen)
 {
     const struct poly_params *p = params;
@@ -33,6 +50,8 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
             ctx, BRC_ERR_INPUT,
             "polyhedra.evaluation = condensed is not for polyhedra.features = closed, whose set of "
             "springs changes all the time; auto and literal are for all");
+    if (p->strain_length == POLY_LENGTH_CENTRES)
+        warn_oblique(ctx, &specimen->facets);
     return 0;
 }
 
@@ -110,6 +129,9 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
     const struct poly_params *p = poly_params_of(sim);
     const struct poly_state *st = state;
     char features[32], area[32], length[32];
+    const struct brc_facets *f = &sim->specimen->facets;
+    struct brc_oblique oblique;
+    brc_oblique_measure(&oblique, f, f->centre, false);
     double stiff = st->n_bonds > 0 ? st->mean_area / st->mean_length : 0;
     snprintf(
         text, size,
@@ -117,14 +139,15 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
         "%zu bonds of mean area %.4g m2 and mean strain length %.4g m (stiffness %.4g N/m in "
         "tension, against K_n = %.4g N/m of a feature contact%s, with K_t = %.4g N/m); erosion by "
         "R = %.4g m removes %zu of "
-        "the inner facets on a side%s.",
+        "the inner facets on a side%s; mean cosine of facet normals and lines of centres %.4f.",
         choice(p, "features", features, sizeof features), choice(p, "area", area, sizeof area),
         choice(p, "strain_length", length, sizeof length), p->torsion ? "on" : "off", st->n_bonds,
         st->mean_area, st->mean_length, p->bn * stiff, p->kn,
         st->is_scaled ? ", by kn_modulus" : "", p->kt, p->radius, st->n_removed,
         st->n_removed == 0            ? ""
         : p->area == POLY_AREA_ERODED ? ": they have no bond"
-                                      : ": they are bonded by their own area");
+                                      : ": they are bonded by their own area",
+        oblique.mean_cos);
 }
 
 const struct brc_model brc_model_polyhedra = {

@@ -68,6 +68,41 @@ static int check_energy(struct brc_context *ctx, const char *name, double given,
              name, given, elastic, distance);
 }
 
+/* Bounds on the mean cosine and on the stiffness by direction: good, and bearable. */
+static const double GOOD_COS = 0.99, LEAST_COS = 0.9, GOOD_PART = 0.05, LEAST_PART = 0.2;
+
+static bool is_oblique(const struct brc_oblique *o, double least_cos, double most)
+{
+    return o->mean_cos < least_cos || o->soft < 1 - most || o->stiff > 1 / (1 - most);
+}
+
+/* Springs along the lines of centres stand for the continuum only where facets are normal to them.
+ */
+static int check_oblique(struct brc_context *ctx, const struct brc_oblique *o, bool is_kept,
+                         const struct brc_facets *facets)
+{
+    if (o->reversed != SIZE_MAX)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "the centres of grains %d and %d lie on the wrong sides of their facet %zu: seeds "
+                 "must lie in their cells",
+                 facets->cell[o->reversed][0], facets->cell[o->reversed][1], o->reversed);
+    if (is_oblique(o, LEAST_COS, LEAST_PART) && !is_kept)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "facets are oblique to the lines of centres (mean cosine %.3f, least %g), and "
+                 "vgcm would "
+                 "be %.3g to %.3g times as stiff as it should be, by direction (%g to %g allowed): "
+                 "it needs the cells of a Laguerre or Voronoi diagram with the seeds "
+                 "at its generators; vgcm.oblique: keep runs it all the same",
+                 o->mean_cos, LEAST_COS, o->soft, o->stiff, 1 - LEAST_PART, 1 / (1 - LEAST_PART));
+    if (is_oblique(o, GOOD_COS, GOOD_PART))
+        brc_log(ctx,
+                "warning: facets are oblique to the lines of centres (mean cosine %.3f): under a "
+                "uniform strain vgcm is %.3g to %.3g times as stiff as the medium that it stands "
+                "for, by direction",
+                o->mean_cos, o->soft, o->stiff);
+    return 0;
+}
+
 static int check(struct brc_context *ctx, const void *values, const struct brc_specimen *specimen)
 {
     struct vgcm_params scaled = *(const struct vgcm_params *)values, *p = &scaled;
@@ -91,6 +126,8 @@ static int check(struct brc_context *ctx, const void *values, const struct brc_s
                  "vgcm.softening_w1 = %g puts the kink behind the end of softening at (2 - "
                  "w1)/beta = %g: lower softening_w1 or softening_beta",
                  p->softening_w1, law.wc);
+    BRC_TRY(
+        check_oblique(ctx, &census.oblique, p->oblique == VGCM_OBLIQUE_KEEP, &specimen->facets));
     if (law.is_brittle || law.is_post_peak || census.n_contacts == 0)
         return 0;
     double kn = law.e_bar / census.largest_distance;
@@ -229,13 +266,14 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
              "interaction %s: %zu of %zu inner facets, mean centre distance %.4g mm (gap %.4g mm); "
              "points %s; softening %s; elastic energy at the peak, mean distance: %.4g J/m2 in "
              "tension, %.4g J/m2 in shear; fracture energies: %.4g and %.4g J/m2; uniform-strain "
-             "estimate for all facets: E = %.4g GPa, "
-             "nu = %.3g",
+             "estimate for all facets: E = %.4g GPa, nu = %.3g; mean cosine of facet normals and "
+             "lines of centres %.6f%s",
              rule[p->interaction], census.n_contacts, census.n_inner, 1e3 * census.mean_distance,
              1e3 * census.gap, points[p->points], softening[p->softening],
              kn > 0 ? vgcm_law_elastic_n(&own->law, kn) : 0,
              kn > 0 ? vgcm_law_elastic_s(&own->law, kn) : 0, p->g_fn, p->g_fs,
-             1e-9 * p->e_bar * (2 + 3 * eta) / (4 + eta), (1 - eta) / (4 + eta));
+             1e-9 * p->e_bar * (2 + 3 * eta) / (4 + eta), (1 - eta) / (4 + eta),
+             census.oblique.mean_cos, census.is_projected ? " (areas are projected)" : "");
 }
 
 const struct brc_model brc_model_vgcm = {

@@ -11,6 +11,9 @@
 static const double FACING = 0.86602540378443864676;
 /* Facets below this part of the mean area are points and lines that rounding has left. */
 static const double LEAST_AREA = 1e-12;
+/* Mean cosine between facets and lines of centres above which the cells are a Laguerre diagram with
+ * the centres at its generators, to rounding; and the least that a projected area counts with. */
+static const double NORMAL_COS = 1 - 1e-6, LEAST_COS = 0.01;
 /* Smallest distance from a platen that its stiffness counts with, in radii of the grain's volume:
  * a Voronoi seed may lie on the platen itself. */
 static const double LEAST_DISTANCE = 0.1;
@@ -95,11 +98,16 @@ void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *para
     }
     if (census->n_contacts > 0)
         census->mean_distance = sum / (double)census->n_contacts;
+    brc_oblique_measure(&census->oblique, facets, facets->seed, false);
+    census->is_projected = census->oblique.mean_cos < NORMAL_COS;
+    if (census->is_projected)
+        brc_oblique_measure(&census->oblique, facets, facets->seed, true);
 }
 
-/* Adds the facet's points to row i, at their places (s, t, h) in the row's frame about origin. */
+/* Adds the facet's points to row i, at their places (s, t, h) in the row's frame about origin, with
+ * a part of their areas. */
 static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, size_t facet,
-                      const double origin[3])
+                      const double origin[3], double part)
 {
     const struct vgcm_params *params = sim->params;
     const struct brc_facets *facets = &sim->specimen->facets;
@@ -121,7 +129,7 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
             p->law[to][VGCM_AT_S] = brc_dot(r, f->s[i]);
             p->law[to][VGCM_AT_T] = brc_dot(r, t);
             p->h[to] = brc_dot(r, f->n[i]);
-            p->law[to][VGCM_AREA] = area[j];
+            p->law[to][VGCM_AREA] = part * area[j];
         }
     }
     free(x);
@@ -150,7 +158,8 @@ static void set_moments(struct brc_contacts *c, size_t i)
     f->rim[i] = sqrt(rim2);
 }
 
-static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, size_t facet)
+static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, size_t facet,
+                    double part)
 {
     struct brc_contacts *c = &sim->pairs;
     const struct brc_bodies *b = &sim->bodies;
@@ -169,13 +178,23 @@ static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, s
     f->phase[i] = VGCM_AFFINE;
     f->kn[i] = law->e_bar / d; /* eq:vgcm:28 */
     f->plane[i] = h - d / 2;   /* (R_a - R_b)/2 - d_v; eq:vgcm:8 */
-    BRC_TRY(add_points(sim, c, i, facet, origin));
+    BRC_TRY(add_points(sim, c, i, facet, origin, part));
     set_moments(c, i);
     const double *m = f->moment[i];
     double k = f->kn[i] * fmax(1, law->eta), g = d - h, polar = m[VGCM_A_SS] + m[VGCM_A_TT];
     brc_set(c->k[i], k * m[VGCM_A], k * (m[VGCM_A] * h * h + polar),
             k * (m[VGCM_A] * g * g + polar));
     return 0;
+}
+
+/* An oblique facet is projected along the line of centres, points and area. The sum of A cos d over
+ * the facets is three times the volume for any cells and centres, so that the mean stiffness over
+ * all directions stays that of the continuum; no choice of a pair's stiffness does so direction by
+ * direction (README.md). */
+static double part_of_area(const struct vgcm_census *census, const struct brc_facets *facets,
+                           size_t facet)
+{
+    return census->is_projected ? fmax(brc_oblique_cos(facets, facets->seed, facet), LEAST_COS) : 1;
 }
 
 static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
@@ -196,7 +215,7 @@ static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
     if (code == 0)
         code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
     for (size_t i = 0; code == 0 && i < n; i++)
-        code = bond_row(sim, law, i, facet[i]);
+        code = bond_row(sim, law, i, facet[i], part_of_area(&census, facets, facet[i]));
     free(pair);
     free(facet);
     return code;
@@ -274,7 +293,7 @@ static int wall_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
     f->kn[i] = law->e_bar / fmax(above, least); /* eq:vgcm:28 */
     for (size_t k = facets->cell_first[cell]; k < facets->cell_first[cell + 1]; k++)
         if (is_facing(facets, (size_t)facets->cell_facet[k], platen))
-            BRC_TRY(add_points(sim, c, i, (size_t)facets->cell_facet[k], sim->bodies.x[cell]));
+            BRC_TRY(add_points(sim, c, i, (size_t)facets->cell_facet[k], sim->bodies.x[cell], 1));
     fit_points(sim, i, platen, above);
     set_moments(c, i);
     set_wall_stiffness(c, i, law);

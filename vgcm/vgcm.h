@@ -4,11 +4,13 @@
 #ifndef VGCM_VGCM_H
 #define VGCM_VGCM_H
 
+#include "common/oblique.h"
 #include "common/sim.h"
 #include "vgcm/law.h"
 
 enum vgcm_softening { VGCM_SOFTENING_NONE, VGCM_SOFTENING_LINEAR, VGCM_SOFTENING_BILINEAR };
 enum vgcm_energies { VGCM_ENERGIES_TOTAL, VGCM_ENERGIES_POST_PEAK };
+enum vgcm_oblique { VGCM_OBLIQUE_REFUSE, VGCM_OBLIQUE_KEEP };
 enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERACTION_AREA };
 
 #define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
@@ -43,6 +45,8 @@ enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERAC
     REAL(interaction_gap_ratio, "1", "0.17", "(0, 10]", "gap: the same in mean sphere diameters") \
     REAL(interaction_area, "1", "0.67", "[0, 10]",                                                \
          "area: smallest facet that is bonded, in mean areas of the inner facets")                \
+    CHOICE(oblique, "refuse|keep", "refuse",                                                      \
+           "facets far from normal to the lines of centres: an error, or kept all the same")      \
     REAL(viscous, "1/s", "0 1/s", "[0, inf)",                                                     \
          "dynamic regime: viscous force = this times effective mass times relative velocity")
 
@@ -136,6 +140,9 @@ struct vgcm_census {
     size_t n_inner, n_contacts;             /* inner facets, those that are contacts */
     double mean_distance, largest_distance; /* m, of the contacts */
     double gap, mean_area;                  /* limit of the gap rule, m; of inner facets, m2 */
+    /* facets are not normal to the lines of centres: their areas count as seen along these */
+    bool is_projected;
+    struct brc_oblique oblique; /* of the areas that count */
 };
 void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets);
