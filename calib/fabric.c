@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calib/fabric.h"
+#include "common/erosion.h"
 #include "common/vec.h"
 
 #include <stdlib.h>
@@ -8,29 +9,16 @@
 /* Area that each of the cell's faces keeps when its planes move in by r; first side: the low cell.
  */
 static int erode_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell, double r,
-                      struct brc_convex *work, double (*area)[2])
+                      struct brc_erosion *work, double (*area)[2])
 {
-    size_t n = f->cell_first[cell + 1] - f->cell_first[cell];
-    struct brc_plane *planes = brc_alloc(ctx, n, sizeof *planes);
-    if (!planes)
-        return BRC_ERR_MEMORY;
-    brc_facets_cell_planes(f, cell, planes);
-    for (size_t i = 0; i < n; i++)
-        planes[i].d -= r;
-    int code = brc_facets_cell(ctx, f, cell, work);
-    double reach = code == 0 ? brc_convex_reach(work, f->centre[cell]) : 0;
-    if (code == 0)
-        code = brc_convex_from_planes(ctx, work, planes, n, f->centre[cell], 2 * reach);
-    for (size_t i = 0; code == 0 && i < work->n_faces; i++) {
-        double centroid[3];
-        int32_t facet = work->plane[i].id;
-        if (facet >= 0)
-            area[facet][f->cell[facet][0] != (int32_t)cell] =
-                brc_polygon_area(work->vertex, work->loop + work->first[i],
-                                 work->first[i + 1] - work->first[i], work->plane[i].n, centroid);
+    BRC_TRY(brc_erosion_begin(ctx, work, f, cell));
+    BRC_TRY(brc_erosion_core(ctx, work, r, f->centre[cell]));
+    for (size_t k = 0; k < work->n; k++) {
+        int32_t facet = f->cell_facet[f->cell_first[cell] + k];
+        double *own = &area[facet][f->cell[facet][0] != (int32_t)cell];
+        BRC_TRY(brc_erosion_area(ctx, work, k, own));
     }
-    free(planes);
-    return code;
+    return 0;
 }
 
 /* Areas that bonds have: those of the facets, or the mean of the eroded faces; a face that erosion
@@ -38,7 +26,7 @@ static int erode_cell(struct brc_context *ctx, const struct brc_facets *f, size_
 static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
                       const struct calib_fabric_rules *rules, double *area)
 {
-    struct brc_convex work;
+    struct brc_erosion work = {0};
     int code = 0;
     memcpy(area, f->area, f->n_facets * sizeof *area);
     if (!rules->is_eroded)
@@ -46,12 +34,11 @@ static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
     double(*side)[2] = brc_alloc(ctx, f->n_facets, sizeof *side);
     if (!side)
         return BRC_ERR_MEMORY;
-    brc_convex_init(&work);
     for (size_t c = 0; c < f->n_cells && code == 0; c++)
         code = erode_cell(ctx, f, c, rules->rounding, &work, side);
     for (size_t i = 0; i < f->n_facets; i++)
         area[i] = side[i][0] > 0 && side[i][1] > 0 ? 0.5 * (side[i][0] + side[i][1]) : 0;
-    brc_convex_free(&work);
+    brc_erosion_free(&work);
     free(side);
     return code;
 }

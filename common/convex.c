@@ -4,14 +4,22 @@
 #include "grow.h"
 #include "vec.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { SIDE_IN = -1, SIDE_ON = 0, SIDE_OUT = 1 };
 /* label of the starting box of brc_convex_from_planes */
 enum { BOX_ID = INT32_MIN };
-/* from_planes treats vertices within this part of the half-width as lying on a plane */
-static const double plane_tolerance = 1e-12;
+/* from_planes treats vertices within this part of the half-width as lying on a plane, or where the
+ * place is far from the origin, within this many units of rounding there */
+static const double plane_tolerance = 1e-12, rounding_units = 16;
+/* Vertices that are as far from a plane as the tolerance may be told apart in a way that closes no
+ * body; then the next one is tried: the last is 1e-12 * 4^7, still far below any detail. */
+static const double next_tolerance = 4;
+enum { MAX_TOLERANCES = 8 };
+/* a body of unknown place is looked for within this many times the planes' largest distance */
+static const double search_width = 1e3;
 
 /* Directed edge, or a cut edge (low, high) and its new vertex. */
 struct edge {
@@ -266,9 +274,8 @@ int brc_convex_clip(struct brc_context *ctx, struct brc_convex *c, const struct 
     return 0;
 }
 
-int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
-                           const struct brc_plane *planes, size_t n, const double centre[3],
-                           double half_width)
+static int clip_box(struct brc_context *ctx, struct brc_convex *c, const struct brc_plane *planes,
+                    size_t n, const double centre[3], double half_width, double tolerance)
 {
     double low[3], high[3];
     for (int k = 0; k < 3; k++) {
@@ -280,13 +287,110 @@ int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
         c->plane[f].id = BOX_ID;
     bool changed;
     for (size_t i = 0; i < n; i++)
-        BRC_TRY(brc_convex_clip(ctx, c, &planes[i], plane_tolerance * half_width, &changed));
+        BRC_TRY(brc_convex_clip(ctx, c, &planes[i], tolerance, &changed));
+    return 0;
+}
+
+int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
+                           const struct brc_plane *planes, size_t n, const double centre[3],
+                           double half_width)
+{
+    double tolerance = fmax(plane_tolerance * half_width,
+                            rounding_units * DBL_EPSILON * (brc_norm(centre) + half_width));
+    int code = BRC_ERR_GEOMETRY;
+    struct brc_context own;
+    for (int i = 0; i < MAX_TOLERANCES && code == BRC_ERR_GEOMETRY; i++) {
+        own = (struct brc_context)BRC_CONTEXT_INIT;
+        code = clip_box(&own, c, planes, n, centre, half_width, tolerance);
+        tolerance *= next_tolerance;
+    }
+    if (code != 0)
+        BRC_FAIL(ctx, code, "%s", own.message);
     for (size_t f = 0; f < c->n_faces; f++)
         if (c->plane[f].id == BOX_ID)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                      "%zu planes do not bound a body within %g m of (%g, %g, %g)", n, half_width,
                      centre[0], centre[1], centre[2]);
     return 0;
+}
+
+void brc_convex_shift(struct brc_convex *c, const double by[3])
+{
+    for (size_t v = 0; v < c->n_vertices; v++)
+        brc_add(c->vertex[v], c->vertex[v], by);
+    for (size_t f = 0; f < c->n_faces; f++) {
+        struct brc_plane *p = &c->plane[f];
+        long double d = p->d;
+        for (int k = 0; k < 3; k++)
+            d += (long double)p->n[k] * by[k];
+        p->d = (double)d;
+    }
+}
+
+/* Middle of the body's box, and the largest distance of a vertex from it. */
+static double middle_of(const struct brc_convex *c, double middle[3])
+{
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = high[k] = c->vertex[0][k];
+        for (size_t v = 1; v < c->n_vertices; v++) {
+            low[k] = fmin(low[k], c->vertex[v][k]);
+            high[k] = fmax(high[k], c->vertex[v][k]);
+        }
+        middle[k] = 0.5 * low[k] + 0.5 * high[k];
+    }
+    return brc_convex_reach(c, middle);
+}
+
+/* Whether two planes differ by less than the tolerance within reach of the origin. */
+static bool is_same_plane(const struct brc_plane *p, const struct brc_plane *q, double reach,
+                          double tolerance)
+{
+    double turn[3];
+    brc_sub(turn, p->n, q->n);
+    return fabs(p->d - q->d) + reach * brc_norm(turn) <= tolerance;
+}
+
+/* The planes as seen from the middle, without those that come again; returns their number. */
+static size_t local_planes(const struct brc_plane *planes, size_t n, const double middle[3],
+                           double reach, double tolerance, struct brc_plane *out)
+{
+    struct brc_convex all = {.plane = out, .n_faces = n};
+    size_t m = 0;
+    double back[3];
+    brc_scale(back, middle, -1);
+    memcpy(out, planes, n * sizeof *out);
+    brc_convex_shift(&all, back);
+    for (size_t i = 0; i < n; i++) {
+        bool is_new = true;
+        for (size_t k = 0; k < m && is_new; k++)
+            is_new = !is_same_plane(&out[k], &out[i], reach, tolerance);
+        if (is_new)
+            out[m++] = out[i];
+    }
+    return m;
+}
+
+int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
+                        const struct brc_plane *planes, size_t n, double tolerance)
+{
+    const double origin[3] = {0, 0, 0};
+    double far = 0, middle[3];
+    for (size_t i = 0; i < n; i++)
+        far = fmax(far, fabs(planes[i].d));
+    BRC_TRY(brc_convex_from_planes(ctx, c, planes, n, origin, search_width * far));
+    if (c->n_faces == 0)
+        return 0;
+    double reach = middle_of(c, middle);
+    struct brc_plane *local = brc_alloc(ctx, n, sizeof *local);
+    if (!local)
+        return BRC_ERR_MEMORY;
+    n = local_planes(planes, n, middle, reach, tolerance, local);
+    int code = brc_convex_from_planes(ctx, c, local, n, origin, 2 * reach);
+    free(local);
+    if (code == 0)
+        brc_convex_shift(c, middle);
+    return code;
 }
 
 double brc_convex_reach(const struct brc_convex *c, const double from[3])

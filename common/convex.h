@@ -37,10 +37,19 @@ int brc_convex_copy(struct brc_context *ctx, struct brc_convex *to, const struct
 int brc_convex_box(struct brc_context *ctx, struct brc_convex *c, const double low[3],
                    const double high[3]);
 /* Intersection of half-spaces inside a bounding box of the given half-width about centre; the
- * planes' ids are kept; an unbounded result is an error. Empty results have n_faces = 0. */
+ * planes' ids are kept; an unbounded result is an error. Empty results have n_faces = 0. Vertices
+ * nearer to a plane than rounding can tell count as on it; where that leaves no closed body, a
+ * coarser distance is tried. */
 int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
                            const struct brc_plane *planes, size_t n, const double centre[3],
                            double half_width);
+/* The same for a body of unknown place and size: it is found first, then made about its own centre,
+ * so that neither its distance from the origin nor its size costs digits. Planes nearer to each
+ * other over the whole body than `tolerance` [m] are one: the first stays. */
+int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
+                        const struct brc_plane *planes, size_t n, double tolerance);
+/* Moves the body and its planes. */
+void brc_convex_shift(struct brc_convex *c, const double by[3]);
 /* Keeps the part inside the half-space. Vertices within tolerance of the plane count as on it, so
  * that no face or edge shorter than about tolerance arises. Sets *changed when something was cut.
  */

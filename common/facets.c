@@ -9,10 +9,12 @@
 #include <string.h>
 
 /* Limits of brc_facets_verify, relative to the cell or the domain. They are far above rounding and
- * far below any real fault. */
+ * far below any real fault. Cells of a file fail them by what its digits leave open: this many
+ * units of the last digit, more on the plane of a facet that is small. */
 static const double closure_limit = 1e-8;
 static const double convexity_limit = 1e-6;
 static const double volume_limit = 1e-12;
+static const double digits_margin = 8;
 
 struct edge {
     int32_t low, high, direction;
@@ -89,6 +91,18 @@ void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio)
         if (!f->is_contact[i])
             f->area_dropped += f->area[i];
     }
+}
+
+double brc_facets_width(const struct brc_facets *f, size_t facet)
+{
+    double perimeter = 0;
+    for (size_t i = f->first[facet]; i < f->first[facet + 1]; i++) {
+        size_t j = i + 1 < f->first[facet + 1] ? i + 1 : f->first[facet];
+        double side[3];
+        brc_sub(side, f->vertex[f->loop[j]], f->vertex[f->loop[i]]);
+        perimeter += brc_norm(side);
+    }
+    return 2 * f->area[facet] / perimeter;
 }
 
 void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_plane *planes)
@@ -179,12 +193,16 @@ static bool is_closed(const struct brc_convex *c, const struct edges *edges)
     return true;
 }
 
-static bool is_convex(const struct brc_convex *c, double tolerance)
+static bool is_convex(const struct brc_facets *f, const struct brc_convex *c, double size)
 {
-    for (size_t k = 0; k < c->n_faces; k++)
+    for (size_t k = 0; k < c->n_faces; k++) {
+        double width = brc_facets_width(f, (size_t)c->plane[k].id);
+        double blur = digits_margin * f->precision * (1 + size / width);
+        double limit = c->plane[k].d + fmax(convexity_limit * size, blur);
         for (size_t v = 0; v < c->n_vertices; v++)
-            if (brc_dot(c->plane[k].n, c->vertex[v]) > c->plane[k].d + tolerance)
+            if (brc_dot(c->plane[k].n, c->vertex[v]) > limit)
                 return false;
+    }
     return true;
 }
 
@@ -207,11 +225,11 @@ static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size
         fault = "has no volume";
     else if (!is_closed(c, edges))
         fault = "is not a closed body: an edge has not exactly two facets";
-    else if (!(closure <= closure_limit))
+    else if (!(closure <= fmax(closure_limit, digits_margin * f->precision / size)))
         fault = "is not closed: its facets' areas do not balance";
     else if (has_reversed_facet(f, cell))
         fault = "has a facet turned inside out";
-    else if (!is_convex(c, convexity_limit * size))
+    else if (!is_convex(f, c, size))
         fault = "is not convex";
     if (fault)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY,

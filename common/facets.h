@@ -30,6 +30,7 @@ struct brc_facets {
     size_t n_vertices;
     double (*vertex)[3]; /* [n_vertices] m */
     double area_dropped; /* m2, total area of the facets that are no contacts */
+    double precision; /* m, last digit of the vertices in the file that they stem from; 0: none */
 };
 
 void brc_facets_free(struct brc_facets *f);
@@ -47,6 +48,8 @@ void brc_facets_check(const struct brc_facets *f, double domain_volume,
 int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume);
 /* Sets is_contact and area_dropped for a limit of min_area_ratio times the mean inner area. */
 void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio);
+/* m, twice the area over the perimeter: what a facet is wide where it is narrow. */
+double brc_facets_width(const struct brc_facets *f, size_t facet);
 /* Planes of a cell's facets, outward, id = facet; n = cell_first[c+1] - cell_first[c]. */
 void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_plane *planes);
 /* The cell as a convex polyhedron with the shared vertices; face ids are facet numbers. */

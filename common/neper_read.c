@@ -38,6 +38,8 @@ struct tess {
     double (*centre)[3]; /* of the cells, in the order of the file */
     size_t *order;       /* cell of the file that comes i-th */
     double extent;
+    int digits;       /* most significant digits of a vertex's coordinate */
+    double precision; /* of the vertices: the last digit of the largest */
 };
 
 static int fail(const struct tess *t, const char *what)
@@ -96,6 +98,15 @@ static int real(struct tess *t, double *value)
     return 0;
 }
 
+/* Significant digits of the number that was read last, trailing zeros included; 0 for zero. */
+static int significant_digits(const char *token)
+{
+    int n = 0;
+    for (; *token && *token != 'e' && *token != 'E'; token++)
+        n += *token >= '0' && *token <= '9' && (n > 0 || *token != '0');
+    return n;
+}
+
 /* The number of an entry: they count from 1. */
 static int number(struct tess *t, size_t i)
 {
@@ -152,8 +163,11 @@ static int read_vertices(struct tess *t)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_vertices; i++) {
         BRC_TRY(number(t, i));
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++) {
             BRC_TRY(real(t, &t->vertex[i][k]));
+            int digits = significant_digits(t->token);
+            t->digits = digits > t->digits ? digits : t->digits;
+        }
         BRC_TRY(skip(t, 1));
     }
     return 0;
@@ -256,6 +270,7 @@ static int check_faces(const struct tess *t)
 static void scale(struct tess *t, double metres)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    double largest = 0;
     for (size_t i = 0; i < t->n_vertices; i++) {
         brc_scale(t->vertex[i], t->vertex[i], metres);
         for (int k = 0; k < 3; k++) {
@@ -266,8 +281,12 @@ static void scale(struct tess *t, double metres)
     for (size_t i = 0; t->seed && i < t->n_cells; i++)
         for (int k = 0; k < 4; k++)
             t->seed[i][k] *= metres;
+    for (int k = 0; k < 3; k++)
+        largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])) / metres);
     brc_sub(high, high, low);
     t->extent = brc_norm(high);
+    if (largest > 0)
+        t->precision = metres * pow(10, floor(log10(largest)) + 1 - t->digits);
 }
 
 /* Area times normal of a face, by its loop, and the mean of its vertices. */
@@ -423,6 +442,7 @@ static void keep_seeds_inside(const struct tess *t, struct brc_facets *out)
 static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, double volume,
                        struct brc_facets *out)
 {
+    out->precision = t->precision;
     out->seed = brc_alloc(t->ctx, t->n_cells, sizeof *out->seed);
     out->radius = brc_alloc(t->ctx, t->n_cells, sizeof *out->radius);
     if (!out->seed || !out->radius)

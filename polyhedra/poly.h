@@ -146,6 +146,7 @@ static inline struct poly_feature poly_point(const struct poly_points *points, s
 
 struct poly_state {
     struct poly_shapes shapes;
+    double (*eroded)[2]; /* m2, of each facet of the specimen: what either grain's core keeps */
     /* derived from the poses at each use */
     double (*world)[3];    /* vertices of all cores in space */
     double (*plane)[4];    /* planes of all faces in space: outward normal n, and n . x */

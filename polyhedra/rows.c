@@ -19,12 +19,6 @@ static void to_frame(double r[3], const double q[4], const double v[3])
     brc_mat_mul_t(r, m, v);
 }
 
-static double eroded_area(const struct poly_shapes *s, size_t body, int32_t facet)
-{
-    int32_t f = poly_shapes_face_on(s, body, facet);
-    return f < 0 ? 0 : s->origin[s->face_first[body] + (size_t)f].area;
-}
-
 /* Material points, normals and tangents of a row's bond in the frames of its bodies; n from a. */
 static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
                      const double at[3], const double n[3])
@@ -53,8 +47,7 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, si
     struct brc_contacts *c = &sim->pairs;
     struct poly_rows *rows = c->model_columns;
     size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
-    double d[3], ea = eroded_area(&st->shapes, ia, (int32_t)facet);
-    double eb = eroded_area(&st->shapes, ib, (int32_t)facet);
+    double d[3], ea = st->eroded[facet][0], eb = st->eroded[facet][1];
     brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
     c->facet[row] = (int32_t)facet;
     st->n_removed += ea == 0 || eb == 0;
@@ -94,9 +87,8 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     brc_sub(d, sim->bodies.x[c->a[row]], sim->bodies.x[p->body]);
     brc_scale(n, p->n, -1);
     c->facet[row] = (int32_t)facet;
-    *poly_bond_area(rows, row) = params->area == POLY_AREA_FACET
-                                     ? f->area[facet]
-                                     : eroded_area(&st->shapes, (size_t)c->a[row], (int32_t)facet);
+    *poly_bond_area(rows, row) =
+        params->area == POLY_AREA_FACET ? f->area[facet] : st->eroded[facet][0];
     *poly_bond_length(rows, row) =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : brc_dot(d, p->n);
     fix_bond(sim, c, row, f->centroid[facet], n);

@@ -18,7 +18,6 @@ void poly_shapes_free(struct poly_shapes *s)
     free(s->end);
     free(s->edge);
     free(s->face);
-    free(s->origin);
     free(s->side);
     free(s->link);
     free(s->star_first);
@@ -70,8 +69,6 @@ static int reserve_features(struct brc_context *ctx, struct poly_shapes *s, size
     cap = s->cap_edges;
     BRC_TRY(reserve(ctx, &s->end, &cap, e, sizeof *s->end));
     BRC_TRY(reserve(ctx, &s->edge, &s->cap_edges, e, sizeof *s->edge));
-    cap = s->cap_faces;
-    BRC_TRY(reserve(ctx, &s->origin, &cap, f, sizeof *s->origin));
     BRC_TRY(reserve(ctx, &s->face, &s->cap_faces, f, sizeof *s->face));
     cap = s->cap_sides;
     BRC_TRY(reserve(ctx, &s->link, &cap, d, sizeof *s->link));
@@ -101,7 +98,6 @@ static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, siz
                       const double middle[3])
 {
     struct poly_face *face = s->face + s->face_first[s->n] + f;
-    struct poly_origin *origin = s->origin + s->face_first[s->n] + f;
     struct poly_side *side = s->side + s->side_first[s->n] + solid->first[f];
     struct poly_link *link = s->link + s->side_first[s->n] + solid->first[f];
     size_t first = solid->first[f], n = solid->first[f + 1] - first;
@@ -113,11 +109,9 @@ static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, siz
         brc_copy(face->n, solid->normal[f]);
     else
         brc_scale(face->n, area, (inward ? -1 : 1) / brc_norm(area));
-    origin->area = fabs(brc_dot(area, face->n));
     face->d = brc_dot(face->n, mean);
     face->first = (int32_t)first;
     face->n_sides = (int32_t)n;
-    origin->facet = solid->facet != NULL ? solid->facet[f] : -1;
     for (size_t k = 0; k < n; k++) {
         link[k].v = solid->loop[first + (inward ? n - 1 - k : k)];
         link[k].edge = -1;
@@ -228,15 +222,6 @@ int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct
     s->side_first[s->n + 1] = s->side_first[s->n] + n_sides;
     s->n++;
     return 0;
-}
-
-int32_t poly_shapes_face_on(const struct poly_shapes *s, size_t body, int32_t facet)
-{
-    struct poly_core c = poly_core_of(s, body);
-    for (int32_t f = 0; f < c.n_faces; f++)
-        if (c.origin[f].facet == facet)
-            return f;
-    return -1;
 }
 
 double poly_shapes_reach(const struct poly_shapes *s, size_t body)

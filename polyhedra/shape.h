@@ -28,11 +28,6 @@ struct poly_face {
     int32_t first, n_sides; /* range of sides */
 };
 
-struct poly_origin {
-    double area;   /* of the face */
-    int32_t facet; /* of the specimen, -1 when there is none */
-};
-
 struct poly_edge {
     int32_t side[2]; /* the sides of the two faces that meet */
     int32_t face[2];
@@ -44,7 +39,6 @@ struct poly_core {
     const int32_t (*end)[2]; /* vertices of each edge */
     const struct poly_edge *edge;
     const struct poly_face *face;
-    const struct poly_origin *origin; /* of each face */
     const struct poly_side *side;
     const struct poly_link *link; /* of each side */
     const int32_t *star_first;    /* [n_vertices + 1] range in star */
@@ -60,7 +54,6 @@ struct poly_shapes {
     int32_t (*end)[2];
     struct poly_edge *edge;
     struct poly_face *face;
-    struct poly_origin *origin;
     struct poly_side *side;
     struct poly_link *link;
     int32_t *star_first; /* vertices of a body plus one, from vertex_first + body */
@@ -76,15 +69,12 @@ struct poly_solid {
     const size_t *first; /* [n_faces + 1] */
     const int32_t *loop;
     const double (*normal)[3]; /* outward unit normals; NULL: from the vertices */
-    const int32_t *facet;      /* NULL: none */
 };
 
 void poly_shapes_free(struct poly_shapes *s);
 /* Adds one core; a solid that is not a closed convex polyhedron is an error that names the body. */
 int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid);
 
-/* Face of a body that lies on a facet, or -1 when erosion has removed it. */
-int32_t poly_shapes_face_on(const struct poly_shapes *s, size_t body, int32_t facet);
 /* Largest distance of a vertex from the body's centre. */
 double poly_shapes_reach(const struct poly_shapes *s, size_t body);
 
@@ -99,7 +89,6 @@ static inline struct poly_core poly_core_of(const struct poly_shapes *s, size_t 
                           (const int32_t(*)[2])(s->end + e),
                           s->edge + e,
                           s->face + f,
-                          s->origin + f,
                           s->side + s->side_first[body],
                           s->link + s->side_first[body],
                           s->star_first + v + body,

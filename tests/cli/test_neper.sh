@@ -4,6 +4,7 @@
 # tessellation of flat convex cells is refused with the place in the file.
 set -u
 breccia=$(realpath "$BRECCIA")
+lamellae=$(realpath tests/data/lamellae.tess)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -65,6 +66,24 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
     cut -d, -f5 "$model-again/curve.csv" | paste -d, force - |
         awk -F, 'NR > 4 && ($1 - $2) ^ 2 > 0.02 ^ 2 * $1 ^ 2 { bad++ } END { exit bad > 0 || NR < 10 }' ||
         fail "$model: another curve"
+done
+
+# facets in one plane: what erosion takes away is said, whatever else is hard about the cells; fewer
+# digits are as good, as far as they go
+for digits in 12 8 6; do
+    awk -v d=$digits '$1 == "**vertex" { n = 1 } $1 == "**edge" { n = 0 }
+         n && NF == 5 { printf "%s %.*f %.*f %.*f 0\n", $1, d, $2, d, $3, d, $4; next } { print }' \
+        "$lamellae" >lamellae.tess
+    case_file lamellae 'shape: polyhedron, grains: tess, tess: lamellae.tess, tess_unit: 1 cm'
+    "$breccia" run lamellae.yaml --model polyhedra --set polyhedra.radius=0.01mm -o lamellae --force --quiet \
+        2>said.txt
+    [ $? -eq 3 ] && [ "$(wc -l <said.txt)" -eq 1 ] && grep -q 'erodes grain .* away; all grains keep' said.txt ||
+        fail "$digits digits, too large a radius: $(cat said.txt)"
+    for model in "polyhedra --set polyhedra.radius=0.002mm" "vgcm --set vgcm.softening=none"; do
+        # shellcheck disable=SC2086
+        "$breccia" run lamellae.yaml --model $model --set run.max_steps=2 -o lamellae --force --quiet \
+            >said.txt 2>&1 || fail "$digits digits, $model: $(cat said.txt)"
+    done
 done
 
 sed 's/shape: polyhedron/shape: box/' again.yaml >wrong.yaml

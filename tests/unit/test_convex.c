@@ -212,12 +212,40 @@ static void test_from_planes(void **state)
     brc_convex_free(&c);
 }
 
+/* A cube, each face of it many planes that are parallel to within a small angle: of 1e-14 to 1e-4,
+ * and moved by as much. It is a closed body all the same, and as large as a cube to that angle. */
+static void test_nearly_coplanar(void **state)
+{
+    (void)state;
+    struct brc_convex c;
+    brc_convex_init(&c);
+    for (int trial = 0; trial < 2000; trial++) {
+        struct brc_plane planes[60];
+        double angle = pow(10, -9 + 5 * uniform()), centroid[3], inertia[3][3], volume;
+        for (int i = 0; i < 60; i++) {
+            planes[i] = (struct brc_plane){{0, 0, 0}, 1 + angle * 0.5 * uniform(), i};
+            for (int k = 0; k < 3; k++)
+                planes[i].n[k] = angle * 0.5 * uniform();
+            planes[i].n[i % 3] += i % 6 < 3 ? 1 : -1;
+            brc_normalise(planes[i].n, planes[i].n);
+        }
+        CHECK_OK(&ctx, brc_convex_from_planes(&ctx, &c, planes, 60, zero, 4));
+        check_valid(&c, 1e-7);
+        brc_convex_mass(&c, &volume, centroid, inertia);
+        CHECK_NEAR(volume, 8, 40 * angle + 1e-7, 0);
+        for (int i = 0; i < 60; i++)
+            for (size_t v = 0; v < c.n_vertices; v++)
+                assert_true(brc_dot(planes[i].n, c.vertex[v]) < planes[i].d + 1e-7);
+    }
+    brc_convex_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_box),         cmocka_unit_test(test_corner),
         cmocka_unit_test(test_touch),       cmocka_unit_test(test_random_cuts),
-        cmocka_unit_test(test_from_planes),
+        cmocka_unit_test(test_from_planes), cmocka_unit_test(test_nearly_coplanar),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
