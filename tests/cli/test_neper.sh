@@ -79,7 +79,7 @@ for digits in 12 8 6; do
         2>said.txt
     [ $? -eq 3 ] && [ "$(wc -l <said.txt)" -eq 1 ] && grep -q 'erodes grain .* away; all grains keep' said.txt ||
         fail "$digits digits, too large a radius: $(cat said.txt)"
-    for model in "polyhedra --set polyhedra.radius=0.002mm" "vgcm --set vgcm.softening=none"; do
+    for model in "polyhedra --set polyhedra.radius=0.002mm" "vgcm --set vgcm.softening=none --set vgcm.oblique=keep"; do
         # shellcheck disable=SC2086
         "$breccia" run lamellae.yaml --model $model --set run.max_steps=2 -o lamellae --force --quiet \
             >said.txt 2>&1 || fail "$digits digits, $model: $(cat said.txt)"

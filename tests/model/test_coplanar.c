@@ -90,8 +90,9 @@ static void models_run(void **state)
         if (fixture_is(model, "null"))
             continue;
         fixture_sim(f, model,
-                    fixture_is(model, "polyhedra") ? "radius: 0.2 mm"
-                                                   : "softening: none; interaction: all",
+                    fixture_is(model, "polyhedra")
+                        ? "radius: 0.2 mm"
+                        : "softening: none; interaction: all; oblique: keep",
                     "", "");
         size_t n_bonds = 0;
         for (size_t row = 0; row < f->sim.pairs.n; row++)
