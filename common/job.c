@@ -54,6 +54,18 @@ static int make_room(struct brc_context *ctx, struct brc_job *job)
     return 0;
 }
 
+/* Sides of a core that is loaded along its axis. Those of a disc, which a Brazilian test needs
+ * under its platens (specimen.c), would make polyhedra a third stiffer: a side cuts more corners
+ * into the outer facets, and each corner is a spring. */
+enum { CORE_SIDES = 64 };
+
+static void choose_sides(struct brc_job *job)
+{
+    struct brc_specimen_params *s = &job->specimen;
+    if (s->sides == 0 && s->grains != BRC_GRAINS_MESH && job->test.kind != BRC_TEST_BRAZILIAN)
+        s->sides = CORE_SIDES;
+}
+
 static int judge(struct brc_context *ctx, struct brc_job *job)
 {
     const char *names[N_COMMON + BRC_JOB_MAX_MODELS];
@@ -61,6 +73,7 @@ static int judge(struct brc_context *ctx, struct brc_job *job)
     int i = 0;
     for (; brc_job_section(i, &names[i], &list); i++)
         BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
+    choose_sides(job);
     return brc_case_finish(ctx, &job->file, names, (size_t)i);
 }
 

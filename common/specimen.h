@@ -23,9 +23,8 @@ enum brc_grains {
     REAL(diameter, "m", "80 mm", "(0, inf)", "cylinder: diameter of the circle")                   \
     REAL(height, "m", "160 mm", "(0, inf)", "cylinder: height (thickness of a disc), along z")     \
     INT(sides, "0", "[0, 1024]",                                                                   \
-        "cylinder: sides of the prism, equal area to the circle; even; 0: 256, and 30 for a "      \
-        "mesh, "                                                                                   \
-        "as in gt12")                                                                              \
+        "cylinder: sides of the prism, equal area to the circle; even; 0: 256 in a Brazilian "     \
+        "test, 64 in others, and 30 for a mesh, as in gt12")                                       \
     TEXT(planes, "", "polyhedron: file of planes, one 'nx ny nz d' a line, n . x <= d, in metres") \
     CHOICE(grains, "packing|grid|mesh|points|tess", "packing",                                     \
            "packing: spheres grown to contact, Laguerre cells; grid: one random seed per cubic "   \

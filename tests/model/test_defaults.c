@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rock of the defaults: what a case without a section for its model gives, at any grain size.
  */
+#include "common/job.h"
 #include "polyhedra/poly.h"
 #include "tests/fixture.h"
 #include "vgcm/vgcm.h"
@@ -41,7 +42,8 @@ static struct rock compress(struct fixture *f, const char *model, const char *sp
 static void nothing_given_is_a_granite(void **state)
 {
     for (int i = 0; i < N_MODELS; i++) {
-        struct rock rock = compress(*state, models[i], "diameter: 32 mm; height: 64 mm", "");
+        struct rock rock =
+            compress(*state, models[i], "diameter: 32 mm; height: 64 mm; sides: 64", "");
         CHECK_NEAR(rock.e, 25.8e9, 0, 0.1);
         CHECK_NEAR(rock.nu, 0.23, 0.04, 0);
         CHECK_NEAR(rock.strength, 122.1e6, 0, 0.2);
@@ -115,11 +117,36 @@ static void header_names_the_stiffness(void **state)
     assert_non_null(strstr(text, "R = 0.0005 m"));
 }
 
+/* Sides of a cylinder go by the test: corners of the outer facets are springs of polyhedra. */
+static void sides_go_by_the_test(void **state)
+{
+    static const struct {
+        const char *specimen, *test;
+        int sides;
+    } cases[] = {{"", "compression", 64},
+                 {"", "tension", 64},
+                 {"", "brazilian", 0}, /* as brc_specimen_create chooses */
+                 {"sides: 100", "compression", 100},
+                 {"grains: mesh", "compression", 0}};
+    struct fixture *f = *state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct brc_job job;
+        char text[160];
+        snprintf(text, sizeof text, "breccia: 1\nspecimen: {%s}\ntest: {kind: %s}\n",
+                 cases[i].specimen, cases[i].test);
+        CHECK_OK(&f->ctx, brc_job_parse(&f->ctx, &job, "case", text));
+        assert_int_equal(job.specimen.sides, cases[i].sides);
+        brc_job_free(&job);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(nothing_given_is_a_granite), FIXTURE_TEST(defaults_scale_with_the_grains),
-        FIXTURE_TEST(given_values_win), FIXTURE_TEST(energies_follow_the_distance),
-        FIXTURE_TEST(header_names_the_stiffness)};
+    const struct CMUnitTest tests[] = {FIXTURE_TEST(nothing_given_is_a_granite),
+                                       FIXTURE_TEST(defaults_scale_with_the_grains),
+                                       FIXTURE_TEST(given_values_win),
+                                       FIXTURE_TEST(sides_go_by_the_test),
+                                       FIXTURE_TEST(energies_follow_the_distance),
+                                       FIXTURE_TEST(header_names_the_stiffness)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
