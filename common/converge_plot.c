@@ -67,9 +67,10 @@ static int put_block(FILE *out, const struct brc_converge_report *r, int model, 
             continue;
         double e = fabs(row->error.mean);
         double se = isfinite(row->error.deviation) ? row->error.deviation : 0;
-        fprintf(out, "%.6g %.6g %.6g %.6g \"%s\"\n", row->cpu_s, 100 * fmax(e, LEAST),
-                100 * fmax(e - se, LEAST), 100 * fmax(e + se, LEAST),
-                short_value(row->setting, text));
+        fprintf(out, "%.6g %.6g %.6g %.6g ", row->cpu_s, 100 * fmax(e, LEAST),
+                100 * fmax(e - se, LEAST), 100 * fmax(e + se, LEAST));
+        brc_gnuplot_quoted(out, short_value(row->setting, text));
+        fputc('\n', out);
         n++;
     }
     fputs("end_of_data\n", out);
@@ -89,6 +90,8 @@ static void put_range(FILE *out, const struct brc_converge_study *study,
             high = fmax(high, row->cpu_s);
             most = fmax(most, fabs(row->error.mean));
         }
+    if (high <= 0) /* nothing is drawn */
+        low = high = 1;
     fprintf(out, "set xrange [%.4g:%.4g]\nset yrange [%.4g:%.4g]\n", low / 1.5, 1.5 * high,
             100 * LEAST, 150 * most);
 }
@@ -168,15 +171,12 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
     int n_points[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES];
     FILE *out;
     BRC_TRY(brc_gnuplot_open(ctx, study->order->dir, "converge.gp", &out));
-    fprintf(
-        out,
-        "# gnuplot converge.gp draws converge.png\n"
-        "set terminal pngcairo size %d,660 font 'sans,12' background '#ffffff'\n"
-        "set output 'converge.png'\n"
-        "set logscale xy\nset grid lc rgb '#dddddd' lt 1\nset border 3\nset tics nomirror\n"
-        "set key at graph 0.5, graph -0.14 center top horizontal maxrows 3\nset bmargin 8\n"
-        "set xlabel 'processor time of a run [s]'\nset ylabel 'error of the %s [%%]' noenhanced\n",
-        760 * study->n_models, study->results[study->observable].name);
+    brc_gnuplot_head(out, "converge", 760 * study->n_models, 660, 12);
+    fprintf(out,
+            "set logscale xy\nset grid lc rgb '#dddddd' lt 1\nset border 3\nset tics nomirror\n"
+            "set key at graph 0.5, graph -0.14 center top horizontal maxrows 3\nset bmargin 8\n"
+            "set xlabel 'processor time of a run [s]'\nset ylabel 'error of the %s [%%]'\n",
+            study->results[study->observable].name);
     for (int i = 0; i < study->n_models; i++) {
         n[i] = find_axes(&report[i], first[i]);
         for (int k = 0; k < n[i]; k++)

@@ -20,6 +20,16 @@ int brc_gnuplot_open(struct brc_context *ctx, const char *dir, const char *name,
     return 0;
 }
 
+void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int font)
+{
+    fprintf(out,
+            "# gnuplot %s.gp draws %s.png\n"
+            "set encoding utf8\n"
+            "set terminal pngcairo noenhanced size %d,%d font 'sans,%d' background '#ffffff'\n"
+            "set output '%s.png'\n",
+            name, name, width, height, font, name);
+}
+
 int brc_gnuplot_close(struct brc_context *ctx, const char *dir, const char *name, FILE *out)
 {
     bool good = !ferror(out);
@@ -29,16 +39,16 @@ int brc_gnuplot_close(struct brc_context *ctx, const char *dir, const char *name
     return 0;
 }
 
+/* Between double quotes gnuplot runs what stands in backquotes and fills in macros, between single
+ * ones two quotes in a row end the text. Octal codes are read after all that, so everything but
+ * plain characters is written as one. */
 void brc_gnuplot_quoted(FILE *out, const char *text)
 {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                " _-+=./,:;()[]%";
     fputc('"', out);
-    for (; *text; text++) {
-        if (strchr("\"\\", *text))
-            fputc('\\', out);
-        else if (strchr("_^{}@&~", *text))
-            fputs("\\\\", out);
-        fputc(*text, out);
-    }
+    for (; *text; text++)
+        fprintf(out, strchr(plain, *text) ? "%c" : "\\%03o", (unsigned char)*text);
     fputc('"', out);
 }
 

@@ -10,7 +10,11 @@
 /* Opens DIR/NAME for writing; close tells of a full disk. */
 int brc_gnuplot_open(struct brc_context *ctx, const char *dir, const char *name, FILE **out);
 int brc_gnuplot_close(struct brc_context *ctx, const char *dir, const char *name, FILE *out);
-/* Text between double quotes of gnuplot, with its markup switched off. */
+/* First lines of the script <name>.gp, which draws <name>.png of width x height pixels. Markup is
+ * off: titles and names stand in the picture as they are. */
+void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int font);
+/* Any text as a string of gnuplot, quotes included: gnuplot takes nothing in it for a command, a
+ * macro or the end of the string. */
 void brc_gnuplot_quoted(FILE *out, const char *text);
 /* Runs each DIR/<picture>.gp, which draws <picture>.png. Without gnuplot the scripts stay and a log
  * line says so. */

@@ -304,11 +304,12 @@ static void put_legend(FILE *out, const struct cracks *c)
         char drawn[32] = "";
         if (c->n_drawn[mode] < c->n_broken[mode])
             snprintf(drawn, sizeof drawn, ", %zu drawn", c->n_drawn[mode]);
-        fprintf(out,
-                "set label %d '%s: %zu facets, %.3g cm^2%s' at screen panel_left, screen %.3f left "
-                "offset 1.5,0 point pt 5 ps 2 lc rgb '#%06x'\n",
-                mode + 1, brc_mode_name((enum brc_mode)mode), c->n_broken[mode],
-                1e4 * c->area[mode], drawn, 0.08 - 0.028 * mode, mode_colour(mode, N_SHADES - 1));
+        fprintf(
+            out,
+            "set label %d '%s: %zu facets, %.3g cm\u00b2%s' at screen panel_left, screen %.3f left "
+            "offset 1.5,0 point pt 5 ps 2 lc rgb '#%06x'\n",
+            mode + 1, brc_mode_name((enum brc_mode)mode), c->n_broken[mode], 1e4 * c->area[mode],
+            drawn, 0.08 - 0.028 * mode, mode_colour(mode, N_SHADES - 1));
     }
 }
 
@@ -351,15 +352,6 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
 
 /* ---- scripts ------------------------------------------------------------------------------- */
 
-static void put_head(FILE *out, const char *name, int width, int height, int font)
-{
-    fprintf(out,
-            "# gnuplot %s.gp draws %s.png\n"
-            "set terminal pngcairo size %d,%d font 'sans,%d' background '#ffffff'\n"
-            "set output '%s.png'\n",
-            name, name, width, height, font, name);
-}
-
 static const char *run_colour(int i)
 {
     static const char *const colour[] = {"#1b4f8f", "#d1570b", "#3a7d2c", "#7a3b93"};
@@ -379,7 +371,7 @@ static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
     bool brazilian = runs->test == BRC_TEST_BRAZILIAN;
     fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nplot ",
             brazilian ? "platen strain" : "axial strain; dashed: lateral strain",
-            brazilian ? "nominal tensile stress 2F/({/Symbol p}DT)" : "axial stress");
+            brazilian ? "nominal tensile stress 2F/(\u03c0DT)" : "axial stress");
     for (int i = 0; i < runs->n; i++) {
         fputs(i ? ", \\\n  " : "", out);
         put_file(out, runs, i, "curve.csv");
@@ -433,7 +425,7 @@ static int write_curves(struct brc_context *ctx, const char *dir, const struct b
 {
     FILE *out;
     BRC_TRY(brc_gnuplot_open(ctx, dir, "curves.gp", &out));
-    put_head(out, "curves", 1500, 640, 13);
+    brc_gnuplot_head(out, "curves", 1500, 640, 13);
     fputs("set datafile separator ','\nset grid lc rgb '#dddddd' lt 1\nset border 3\n"
           "set tics nomirror\nset key outside top center horizontal\n"
           "set multiplot layout 1,2 title ",
@@ -451,7 +443,7 @@ static int write_pictures(struct brc_context *ctx, const char *dir,
 {
     FILE *out;
     BRC_TRY(brc_gnuplot_open(ctx, dir, "cracks.gp", &out));
-    put_head(out, "cracks", (int)(PANEL_WIDTH * height * runs->n), height, height / 70);
+    brc_gnuplot_head(out, "cracks", (int)(PANEL_WIDTH * height * runs->n), height, height / 70);
     fputs("set pm3d depthorder border lc rgb '#202020' lw 0.4\nset border 0\n"
           "panel_scale = 1.0 # of the specimen in its panel\nset multiplot title ",
           out);
