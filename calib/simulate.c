@@ -67,9 +67,10 @@ static int run_job(struct brc_context *ctx, struct calib_simulator *s,
                                   .model = model,
                                   .specimen = &s->specimen[test],
                                   .dir = dir,
-                                  .is_forced = true,
+                                  .is_forced = s->has_run[test],
                                   .progress = &quiet};
     int code = brc_run(ctx, &order, out);
+    s->has_run[test] |= brc_run_has_begun(dir) && code != BRC_ERR_INPUT;
     brc_progress_end(&quiet);
     return code;
 }

@@ -158,6 +158,23 @@ static int draw(struct compare *c)
     return job->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &job->output) : 0;
 }
 
+/* Tables and pictures of the folder itself (gnuplot.log only grows); a comparison that goes on
+ * replaces its own. */
+static int check_folders(const struct compare *c)
+{
+    static const char *const names[] = {"compare.txt", "curves.gp", "curves.png", "cracks.gp",
+                                        "cracks.png"};
+    const struct brc_compare_order *o = c->order;
+    bool has_begun = false;
+    for (int i = 0; i < c->n; i++) {
+        bool is_resumed = o->is_resumed && brc_run_has_begun(c->run[i].dir);
+        has_begun |= is_resumed;
+        BRC_TRY(brc_run_check_folder(c->ctx, c->run[i].dir, o->job, is_resumed, o->is_forced));
+    }
+    return brc_run_check_own(c->ctx, o->dir, o->job, names, sizeof names / sizeof names[0],
+                             has_begun || o->is_forced);
+}
+
 int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
 {
     struct compare *c = brc_alloc(ctx, 1, sizeof *c);
@@ -167,11 +184,10 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
     c->ctx = ctx;
     c->order = order;
     int code = choose_models(c);
-    for (int i = 0; i < c->n && code == 0; i++) {
-        bool is_resumed = order->is_resumed && brc_run_has_begun(c->run[i].dir);
-        code = brc_run_check_folder(ctx, c->run[i].dir, is_resumed, order->is_forced);
+    for (int i = 0; i < c->n; i++)
         label[i] = c->run[i].model->name;
-    }
+    if (code == 0)
+        code = check_folders(c);
     if (code == 0)
         code = try_models(c);
     if (code == 0)

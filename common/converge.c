@@ -5,14 +5,12 @@
 #include "converge_record.h"
 #include "run.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { PATH_SIZE = 4096, MAX_JOBS = BRC_PROGRESS_MAX_RUNS };
@@ -113,22 +111,26 @@ static int try_models(struct ladder *l)
     return code;
 }
 
+/* A ladder that goes on replaces its own tables: those beside a record that it can read. */
+static int check_folder(const struct ladder *l)
+{
+    static const char *const names[] = {"converge_runs.csv", "converge.txt", "converge.csv",
+                                        "converge.gp",       "converge.png", "converge_unfinished"};
+    const struct brc_converge_order *o = l->study.order;
+    bool may_go_on = o->is_resumed && brc_run_has_file(o->dir, "converge_runs.csv");
+    return brc_run_check_own(l->ctx, o->dir, o->job, names, sizeof names / sizeof names[0],
+                             may_go_on || o->is_forced);
+}
+
 /* Everything that can be refused, before a folder is touched. */
 static int prepare(struct ladder *l)
 {
     struct brc_converge_study *study = &l->study;
     const struct brc_converge_order *o = study->order;
-    char path[PATH_SIZE];
     BRC_TRY(check_order(l->ctx, o));
     BRC_TRY(choose_models(l));
     BRC_TRY(brc_converge_read_axes(l->ctx, o, study->model, study->n_models, &l->axes));
-    if (snprintf(path, sizeof path, "%s/converge_runs.csv", o->dir) >= PATH_SIZE)
-        BRC_FAIL(l->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", o->dir);
-    if (!o->is_resumed && !o->is_forced && access(path, F_OK) == 0)
-        BRC_FAIL(l->ctx, BRC_ERR_INPUT,
-                 "%s already holds results (converge_runs.csv); go on with --resume, replace them "
-                 "with --force, or choose another folder with -o",
-                 o->dir);
+    BRC_TRY(check_folder(l));
     BRC_TRY(try_models(l));
     BRC_TRY(find_observable(l->ctx, study));
     for (int i = 0; i < study->n_models; i++)
@@ -140,6 +142,13 @@ static int prepare(struct ladder *l)
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
+/* What is in the way of a run is not its setting's fault: the ladder ends. */
+static int check_place(struct brc_context *ctx, const struct brc_run_order *o)
+{
+    int code = brc_run_check_folder(ctx, o->dir, o->job, o->is_resumed, o->is_forced);
+    return code == BRC_ERR_INPUT ? (ctx->code = BRC_ERR_USAGE) : code;
+}
+
 static int run_task(struct brc_context *ctx, const void *user, struct brc_progress *progress,
                     struct brc_summary *out)
 {
@@ -147,6 +156,7 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
     struct brc_specimen specimen = {0};
     struct brc_job job;
     bool has_begun = brc_run_has_begun(t->dir);
+    bool goes_on = t->order->is_resumed && has_begun && brc_run_has_file(t->dir, "state.h5");
     int code = brc_converge_job(ctx, t->order->job, t->setting, t->seed, &job);
     if (code == 0)
         code = brc_specimen_create(ctx, &job.specimen, &specimen);
@@ -154,29 +164,16 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
                                         .model = t->model->model,
                                         .specimen = &specimen,
                                         .dir = t->dir,
-                                        .is_resumed = t->order->is_resumed && has_begun,
-                                        .is_forced = !t->order->is_resumed && has_begun,
+                                        .is_resumed = goes_on,
+                                        .is_forced = has_begun && !goes_on,
                                         .progress = progress};
+    if (code == 0)
+        code = check_place(ctx, &order);
     if (code == 0)
         code = brc_run(ctx, &order, out);
     brc_specimen_free(&specimen);
     brc_job_free(&job);
     return code;
-}
-
-/* The folder of a finished run holds files alone, all of them its own. */
-static void remove_folder(const char *dir)
-{
-    char path[PATH_SIZE + 256];
-    DIR *folder = opendir(dir);
-    for (struct dirent *e; folder && (e = readdir(folder));) {
-        snprintf(path, sizeof path, "%s/%s", dir, e->d_name);
-        if (strcmp(e->d_name, ".") != 0 && strcmp(e->d_name, "..") != 0)
-            unlink(path);
-    }
-    if (folder)
-        closedir(folder);
-    rmdir(dir);
 }
 
 static void tell(const struct ladder *l, const struct task *t, const struct brc_converge_run *run,
@@ -225,7 +222,7 @@ static int take_outcome(struct ladder *l, int slot)
     BRC_TRY(brc_converge_record_add(l->ctx, &l->record, t->model->model->name,
                                     l->study.order->job->specimen.seed + t->seed, t->setting, run));
     run->is_done = true;
-    remove_folder(t->dir);
+    BRC_TRY(brc_run_remove(l->ctx, t->dir));
     l->n_done++;
     l->weight_left = fmax(l->weight_left - expected(t->model, t->setting), 0);
     tell(l, t, run, o->code ? o->message : "");

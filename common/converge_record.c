@@ -17,7 +17,7 @@ static void make_header(const struct brc_converge_study *study, char header[HEAD
     for (int i = 0; i < study->n_results; i++)
         n += snprintf(header + n, (size_t)(HEADER_SIZE - n), ",%s [%s]", study->results[i].name,
                       study->results[i].unit);
-    snprintf(header + n, (size_t)(HEADER_SIZE - n), "\n");
+    snprintf(header + n, (size_t)(HEADER_SIZE - n), ",digest\n");
 }
 
 static int keep(struct brc_context *ctx, struct brc_converge_record *r,
@@ -36,9 +36,28 @@ static int keep(struct brc_context *ctx, struct brc_converge_record *r,
     return 0;
 }
 
+/* The digest of what stands before it in a line. */
+static uint64_t digest(const char *line, size_t n)
+{
+    return brc_hash_bytes(line, n, BRC_HASH_SEED);
+}
+
+/* A line ends with its digest, which is cut off. */
+static bool has_digest(char *line)
+{
+    char text[17], *comma = strrchr(line, ',');
+    if (!comma)
+        return false;
+    snprintf(text, sizeof text, "%016" PRIx64, digest(line, (size_t)(comma - line)));
+    *comma = '\0';
+    return strcmp(comma + 1, text) == 0;
+}
+
 /* Takes a whole line apart in its place; false when it is not one of ours. */
 static bool read_line(char *line, int n_results, struct brc_converge_run *run)
 {
+    if (!has_digest(line))
+        return false;
     char *column[N_COLUMNS + BRC_MAX_RESULTS] = {NULL}, *end = line;
     int n = 0, n_wanted = N_COLUMNS + n_results;
     for (char *at = line; at && n < n_wanted; n++) {
@@ -60,7 +79,8 @@ static bool read_line(char *line, int n_results, struct brc_converge_run *run)
     return end == column[0] + 16;
 }
 
-/* Reads what is there. A last line that a stop has cut is dropped from the file. */
+/* Reads what is there. A last line that a stop has cut is dropped from the file; a cut header is no
+ * more than the beginning of ours. */
 static int read_old(struct brc_context *ctx, struct brc_converge_record *r, const char *header)
 {
     char line[LINE_SIZE];
@@ -70,19 +90,21 @@ static int read_old(struct brc_context *ctx, struct brc_converge_record *r, cons
         struct brc_converge_run run;
         size_t n = strlen(line);
         bool is_whole = n > 0 && line[n - 1] == '\n';
-        if (!is_whole && feof(r->file))
-            break;
-        if (is_first && strcmp(line, header) != 0)
+        bool is_cut = !is_whole && feof(r->file);
+        if (is_first && (is_cut ? strncmp(line, header, n) : strcmp(line, header)) != 0)
             BRC_FAIL(
                 ctx, BRC_ERR_INPUT,
                 "%s holds other results than this case has; replace it with --force, or choose "
                 "another folder with -o",
                 r->path);
+        if (is_cut)
+            break;
         if (is_whole)
             line[n - 1] = '\0';
         if (!is_whole || (!is_first && !read_line(line, r->n_results, &run)))
             BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: cannot read the line '%.40s...'; remove it, or replace all with --force",
+                     "%s: the line '%.40s...' is not as it was written; remove it, or replace all "
+                     "with --force",
                      r->path, line);
         if (!is_first)
             BRC_TRY(keep(ctx, r, &run));
@@ -122,6 +144,12 @@ int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
     BRC_TRY(lock(ctx, r));
     make_header(study, header);
+    /* another ladder may have begun, and ended, since the folder was looked at */
+    fseek(r->file, 0, SEEK_END);
+    if (!o->is_resumed && !o->is_forced && ftell(r->file) > 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s has been written by another run just now; choose another folder with -o",
+                 r->path);
     if (o->is_forced && ftruncate(fileno(r->file), 0) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot empty %s: %s", r->path, strerror(errno));
     BRC_TRY(read_old(ctx, r, header));
@@ -149,7 +177,7 @@ int brc_converge_record_add(struct brc_context *ctx, struct brc_converge_record 
                   run->steps, run->dt, run->cpu_s);
     for (int i = 0; i < r->n_results; i++)
         n += snprintf(line + n, sizeof line - (size_t)n, ",%.17g", run->result[i]);
-    snprintf(line + n, sizeof line - (size_t)n, "\n");
+    snprintf(line + n, sizeof line - (size_t)n, ",%016" PRIx64 "\n", digest(line, (size_t)n));
     BRC_TRY(write_text(ctx, r, line));
     return keep(ctx, r, run);
 }

@@ -12,6 +12,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* A state with all that it hangs on. */
 struct loaded {
@@ -67,6 +68,36 @@ struct target {
     const void *what;
 };
 
+/* The file out must not be there, nor where it is written first; what is read is never replaced:
+ * the file and, where the job counts, those that it names. */
+static int check_out(struct brc_context *ctx, const struct brc_export_order *o,
+                     const struct brc_job *job)
+{
+    char part[4096];
+    struct stat status;
+    const char *in_the_way = o->out;
+    if (!o->out)
+        return 0;
+    if (snprintf(part, sizeof part, "%s.part", o->out) >= (int)sizeof part)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "-o: the path %.80s... is too long", o->out);
+    if (lstat(o->out, &status) != 0 && lstat((in_the_way = part), &status) != 0)
+        return 0;
+    if (!S_ISREG(status.st_mode))
+        BRC_FAIL(
+            ctx, BRC_ERR_USAGE,
+            "-o: %s is there and is not a plain file; choose another name, or leave -o out for "
+            "standard output",
+            in_the_way);
+    if (brc_job_is_same_file(o->path, o->out) || (job && brc_job_is_input(job, o->out)))
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "-o: %s is what is read; choose another name", o->out);
+    if (!o->is_forced)
+        BRC_FAIL(ctx, BRC_ERR_USAGE,
+                 "-o: %s is there; replace it with --force, or choose another "
+                 "name",
+                 in_the_way);
+    return 0;
+}
+
 static int write_to(struct brc_context *ctx, const char *path, const struct target *target)
 {
     char *text = NULL;
@@ -114,20 +145,22 @@ static int find_table(struct brc_context *ctx, struct brc_state *state, const ch
 }
 
 /* Straight from the file: neither the case nor the files that it names are needed. */
-int brc_export_table(struct brc_context *ctx, const char *path, const char *table, const char *out)
+int brc_export_table(struct brc_context *ctx, const struct brc_export_order *order,
+                     const char *table)
 {
     const struct brc_model *model;
     struct brc_sim sim;
     struct brc_state state;
     struct brc_state_part *part;
-    BRC_TRY(read_model(ctx, path, &model));
+    BRC_TRY(check_out(ctx, order, NULL));
+    BRC_TRY(read_model(ctx, order->path, &model));
     BRC_TRY(brc_sim_tables(ctx, &sim, model));
     brc_state_list(&sim, &state);
     int code = find_table(ctx, &state, table, &part);
     if (code == 0)
-        code = brc_h5_load_table(ctx, path, part);
+        code = brc_h5_load_table(ctx, order->path, part);
     if (code == 0)
-        code = write_to(ctx, out, &(struct target){put_table, part->table});
+        code = write_to(ctx, order->out, &(struct target){put_table, part->table});
     brc_sim_free(&sim);
     return code;
 }
@@ -276,17 +309,19 @@ static int load_specimen(struct brc_context *ctx, const char *path, struct loade
     return brc_specimen_create(ctx, &l->job.specimen, &l->specimen);
 }
 
-int brc_export_format(struct brc_context *ctx, const char *path, const char *format,
-                      const char *out)
+int brc_export_format(struct brc_context *ctx, const struct brc_export_order *order,
+                      const char *format)
 {
     struct loaded l;
     bool is_stl = strcmp(format, "stl") == 0;
     if (!is_stl && strcmp(format, "tess") != 0)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "unknown format '%.60s'; there are: stl, tess", format);
-    int code = is_stl ? load(ctx, path, &l) : load_specimen(ctx, path, &l);
+    int code = is_stl ? load(ctx, order->path, &l) : load_specimen(ctx, order->path, &l);
     const struct target stl = {put_stl, &l.sim}, tess = {put_tess, &l.specimen};
     if (code == 0)
-        code = write_to(ctx, out, is_stl ? &stl : &tess);
+        code = check_out(ctx, order, &l.job);
+    if (code == 0)
+        code = write_to(ctx, order->out, is_stl ? &stl : &tess);
     unload(&l);
     return code;
 }

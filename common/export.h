@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Saved states for other programs: tables as CSV, fragments as STL, the specimen as a Neper
- * tessellation. The state is loaded into a simulation of its own case, so files that the case names
- * must be where they were. */
+ * tessellation. For all but tables the state is loaded into a simulation of its own case, so files
+ * that the case names must be where the state's folder sees them. */
 #ifndef BRC_EXPORT_H
 #define BRC_EXPORT_H
 
@@ -9,12 +9,18 @@
 
 #include <stdio.h>
 
-/* A table of a state, by its name in the file ("curve", "pairs/points"), to the file out (NULL:
- * standard output). */
-int brc_export_table(struct brc_context *ctx, const char *path, const char *table, const char *out);
-/* "stl" or "tess"; for tess, path may be a case file. */
-int brc_export_format(struct brc_context *ctx, const char *path, const char *format,
-                      const char *out);
+struct brc_export_order {
+    const char *path; /* of a state, or for "tess" of a case file */
+    const char *out;  /* file to write; NULL: standard output */
+    bool is_forced;   /* replace the file out that is there, unless it is what is read */
+};
+
+/* A table of a state, by its name in the file ("curve", "pairs/points"). */
+int brc_export_table(struct brc_context *ctx, const struct brc_export_order *order,
+                     const char *table);
+/* "stl" or "tess". */
+int brc_export_format(struct brc_context *ctx, const struct brc_export_order *order,
+                      const char *format);
 
 /* Surfaces of the fragments, one solid each, closed: inner facets are left out, and a vertex of
  * several grains of a fragment lies in the middle of them. */

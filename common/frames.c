@@ -114,12 +114,36 @@ int brc_frames_write(struct brc_context *ctx, struct brc_frames *f, const char *
     return write_all(ctx, f, dir, sim, extra);
 }
 
+/* "grains_00012.hdf", "grains.hdf.series", and their beginnings "...part". */
 static bool is_ours(const char *name)
 {
-    for (int k = 0; k < BRC_N_FRAME_KINDS; k++)
-        if (strncmp(name, kind_name[k], strlen(kind_name[k])) == 0 && strstr(name, ".hdf"))
+    for (int k = 0; k < BRC_N_FRAME_KINDS; k++) {
+        size_t n = strlen(kind_name[k]);
+        if (strncmp(name, kind_name[k], n) != 0)
+            continue;
+        const char *rest = name + n;
+        size_t digits = *rest == '_' ? strspn(rest + 1, "0123456789") : 0;
+        const char *ending = digits >= 5 ? ".hdf" : ".hdf.series";
+        rest += digits >= 5 ? digits + 1 : 0;
+        n = strlen(ending);
+        if (strncmp(rest, ending, n) == 0 && (!rest[n] || strcmp(rest + n, ".part") == 0))
             return true;
+    }
     return false;
+}
+
+bool brc_frames_find(const char *dir, char *name, size_t size)
+{
+    char path[PATH_SIZE];
+    bool is_found = false;
+    DIR *folder = snprintf(path, sizeof path, "%s/frames", dir) < PATH_SIZE ? opendir(path) : NULL;
+    for (struct dirent *entry; folder && !is_found && (entry = readdir(folder));) {
+        is_found = is_ours(entry->d_name);
+        snprintf(name, size, "frames/%s", entry->d_name);
+    }
+    if (folder)
+        closedir(folder);
+    return is_found;
 }
 
 int brc_frames_remove(struct brc_context *ctx, const char *dir)

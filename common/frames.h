@@ -31,6 +31,8 @@ bool brc_frames_is_due(const struct brc_frames *f, const struct brc_output_param
  * step is written anew. */
 int brc_frames_write(struct brc_context *ctx, struct brc_frames *f, const char *dir,
                      const struct brc_sim *sim, const struct brc_h5_extra *extra);
+/* Is there a frame, or the series of frames, in dir? Its name from dir on. */
+bool brc_frames_find(const char *dir, char *name, size_t size);
 /* Removes the frames of an earlier run. */
 int brc_frames_remove(struct brc_context *ctx, const char *dir);
 

@@ -59,6 +59,10 @@ void brc_job_locate(struct brc_context *ctx, const struct brc_job *job);
 
 /* The key holds the name of a file. */
 bool brc_job_names_file(const char *section, const struct brc_param *p);
+/* Two paths lead to one file that is there. */
+bool brc_job_is_same_file(const char *name, const char *path);
+/* The file at path is the case file or one that it names, by whatever path. */
+bool brc_job_is_input(const struct brc_job *job, const char *path);
 /* Names of files of the filled job as the working folder sees them. Done by brc_job_read. */
 int brc_job_find_files(struct brc_context *ctx, struct brc_job *job);
 

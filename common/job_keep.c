@@ -94,6 +94,25 @@ static int path_between(const char *from, const char *to, char *path, size_t siz
     return used + 4 >= size || used + (size_t)n >= size ? -1 : 0;
 }
 
+bool brc_job_is_same_file(const char *name, const char *path)
+{
+    struct stat a, b;
+    return *name && stat(name, &a) == 0 && stat(path, &b) == 0 && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+bool brc_job_is_input(const struct brc_job *job, const char *path)
+{
+    struct brc_specimen_params specimen = job->specimen;
+    bool is_input = brc_job_is_same_file(job->file.path, path);
+    for (int i = 0; i < brc_specimen_param_list.n; i++) {
+        const struct brc_param *p = &brc_specimen_param_list.params[i];
+        if (brc_job_names_file("specimen", p))
+            is_input = is_input || brc_job_is_same_file(text_of(p, &specimen), path);
+    }
+    return is_input;
+}
+
 /* ---- the case that is kept ----------------------------------------------------------------- */
 
 /* A relative name as the folder dir sees it. */

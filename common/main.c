@@ -49,6 +49,7 @@ static const struct option {
     {"--resume", NULL, "RC", "go on from the saved state, to the same bits"},
     {"--resume", NULL, "V", "keep finished runs, go on with the others"},
     {"--force", NULL, "RCV", "replace results that are there"},
+    {"--force", NULL, "X", "replace the file that is there"},
     {"--quiet", NULL, "RCV", "no progress, no log lines"},
     {"--help", NULL, "RCVPMIX", "this text"},
 };
@@ -371,7 +372,7 @@ static int run_job(struct brc_context *ctx, const struct options *o, const struc
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
         snprintf(dir, sizeof dir, "results/%s/%s", job->name, name);
-    BRC_TRY(brc_run_check_folder(ctx, dir, o->is_resumed, o->is_forced));
+    BRC_TRY(brc_run_check_folder(ctx, dir, job, o->is_resumed, o->is_forced));
     int code = make_specimen(ctx, job, &specimen);
     if (code == 0) {
         brc_run_hold_signals();
@@ -494,8 +495,9 @@ static int act_export(struct brc_context *ctx, const struct options *o)
     const char *what = o->format ? o->format : o->table;
     if (!what || (o->format && o->table))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
-    return o->table ? brc_export_table(ctx, o->operand, o->table, o->dir)
-                    : brc_export_format(ctx, o->operand, o->format, o->dir);
+    const struct brc_export_order order = {o->operand, o->dir, o->is_forced};
+    return o->table ? brc_export_table(ctx, &order, o->table)
+                    : brc_export_format(ctx, &order, o->format);
 }
 
 static int act_params(struct brc_context *ctx, const struct options *o)

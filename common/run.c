@@ -86,82 +86,10 @@ bool brc_run_is_stopped(void)
 
 /* ---- folder -------------------------------------------------------------------------------- */
 
-static const char *const result_files[] = {
-    "summary.json", "state.h5",    "curve.csv",
-    "events.csv",   "broken.csv",  "curves.png",
-    "cracks.png",   "cracks.plot", "frames/grains.hdf.series"};
-enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
-
 static int in_folder(struct brc_context *ctx, const char *dir, const char *name,
                      char path[PATH_SIZE])
 {
-    if (snprintf(path, PATH_SIZE, "%s/%s", dir, name) >= PATH_SIZE)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
-    return 0;
-}
-
-int brc_run_make_folder(struct brc_context *ctx, const char *path)
-{
-    char part[PATH_SIZE];
-    BRC_TRY(in_folder(ctx, path, "", part));
-    for (char *c = part + 1; *c; c++) {
-        if (*c != '/')
-            continue;
-        *c = '\0';
-        struct stat status;
-        if (mkdir(part, 0777) != 0 && errno != EEXIST)
-            BRC_FAIL(ctx, BRC_ERR_IO, "cannot make the folder %s: %s", part, strerror(errno));
-        if (stat(part, &status) == 0 && !S_ISDIR(status.st_mode))
-            BRC_FAIL(ctx, BRC_ERR_IO, "%s is no folder; choose another with -o", part);
-        *c = '/';
-    }
-    return 0;
-}
-
-/* The folder, or the nearest one above it that is there, must take files. */
-static int check_writable(struct brc_context *ctx, const char *dir)
-{
-    char path[PATH_SIZE];
-    struct stat status;
-    BRC_TRY(in_folder(ctx, dir, "", path));
-    while (stat(path, &status) != 0) {
-        char *slash = strrchr(path, '/');
-        if (slash == path || !slash)
-            snprintf(path, sizeof path, slash ? "/" : ".");
-        else
-            *slash = '\0';
-    }
-    if (!S_ISDIR(status.st_mode))
-        BRC_FAIL(ctx, BRC_ERR_IO, "%s is no folder; choose another with -o", path);
-    if (access(path, W_OK | X_OK) != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write to the folder %s: %s; choose another with -o", path,
-                 strerror(errno));
-    return 0;
-}
-
-static bool is_there(const char *dir, const char *name)
-{
-    char path[PATH_SIZE];
-    return snprintf(path, sizeof path, "%s/%s", dir, name) < PATH_SIZE && access(path, F_OK) == 0;
-}
-
-bool brc_run_has_begun(const char *dir)
-{
-    return is_there(dir, "log");
-}
-
-int brc_run_check_folder(struct brc_context *ctx, const char *dir, bool is_resumed, bool is_forced)
-{
-    BRC_TRY(check_writable(ctx, dir));
-    if (is_resumed && !brc_run_has_begun(dir))
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s holds no run to resume; leave out --resume", dir);
-    for (int i = 0; i < N_RESULT_FILES && !is_resumed && !is_forced; i++)
-        if (is_there(dir, result_files[i]))
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s already holds results (%s); go on with --resume, replace them with "
-                     "--force, or choose another folder with -o",
-                     dir, result_files[i]);
-    return 0;
+    return brc_run_path(ctx, dir, name, path, PATH_SIZE);
 }
 
 /* The log is locked while the run lasts, so that no second run writes here. Its content stays. */
@@ -183,18 +111,11 @@ static int open_log(struct run *r)
  */
 static int replace_old(struct run *r)
 {
-    char path[PATH_SIZE];
-    BRC_TRY(in_folder(r->ctx, r->order->dir, "case.yaml", path));
-    BRC_TRY(brc_output_text(r->ctx, path, r->case_text));
-    for (int i = 0; i < N_RESULT_FILES; i++) {
-        BRC_TRY(in_folder(r->ctx, r->order->dir, result_files[i], path));
-        if (unlink(path) != 0 && errno != ENOENT)
-            BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot remove %s: %s", path, strerror(errno));
-    }
-    BRC_TRY(brc_frames_remove(r->ctx, r->order->dir));
+    const struct brc_run_order *o = r->order;
+    BRC_TRY(brc_run_keep_case(r->ctx, o->dir, o->job, r->case_text, true));
+    BRC_TRY(brc_run_remove_results(r->ctx, o->dir));
     if (ftruncate(fileno(r->log), 0) != 0)
-        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty the log in %s: %s", r->order->dir,
-                 strerror(errno));
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty the log in %s: %s", o->dir, strerror(errno));
     return 0;
 }
 
@@ -264,6 +185,8 @@ static int save(struct run *r)
     make_extra(r, &extra);
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
+    /* limits of a run that goes on may have changed: so does the case, with the state */
+    BRC_TRY(brc_run_keep_case(r->ctx, r->order->dir, r->order->job, r->case_text, false));
     r->saved_at = brc_progress_clock();
     return 0;
 }
@@ -473,13 +396,20 @@ static void note_header(struct run *r)
     note(r, "%zu grains, %zu facets, %zu pairs, %zu platen contacts", f->n_cells, f->n_facets,
          r->sim.pairs.n, r->sim.platens.n);
     note(r, "%s", r->parameters);
+    note(r, "case.yaml: digest %016" PRIx64, brc_run_case_digest(r->case_text));
+}
+
+static int check_folder(const struct run *r)
+{
+    const struct brc_run_order *o = r->order;
+    return brc_run_check_folder(r->ctx, o->dir, o->job, o->is_resumed, o->is_forced);
 }
 
 /* Everything that can be refused is refused before the folder is touched. */
 static int prepare(struct run *r)
 {
     const struct brc_run_order *o = r->order;
-    BRC_TRY(brc_run_check_folder(r->ctx, o->dir, o->is_resumed, o->is_forced));
+    BRC_TRY(check_folder(r));
     r->parameters = brc_job_text(r->ctx, o->job, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
@@ -487,8 +417,10 @@ static int prepare(struct run *r)
                            &o->job->test, &o->job->run));
     BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
     BRC_TRY(brc_job_keep(r->ctx, o->job, o->model, o->dir, &r->case_text));
+    BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->job, r->case_text, o->is_resumed));
     BRC_TRY(open_log(r));
-    bool has_state = o->is_resumed && is_there(o->dir, "state.h5");
+    BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
+    bool has_state = o->is_resumed && brc_run_has_file(o->dir, "state.h5");
     BRC_TRY(has_state ? load(r) : replace_old(r));
     note_header(r);
     if (has_state)

@@ -162,7 +162,7 @@ refuse 3 bad.yaml:7 "run.dt = 1 s is above the stable limit of" "use at most tha
 # --- folders ----------------------------------------------------------------------------------------
 refuse 3 "$results already holds results" "--resume" "--force" "-o" -- run case.yaml
 : >file
-refuse 4 "file is no folder" "choose another with -o" -- run case.yaml -o file/below
+refuse 4 "file is not a folder" "choose another with -o" -- run case.yaml -o file/below
 if [ "$(id -u)" -ne 0 ]; then
     mkdir closed
     chmod 500 closed

@@ -78,7 +78,7 @@ expect 3 "already holds results" "$breccia" run case.yaml
 expect 3 "holds no run to resume" "$breccia" run case.yaml -o other --resume
 expect 3 "the case says 'specimen.seed = 2'" "$breccia" run case.yaml --resume --set specimen.seed=2
 : >file
-expect 4 "is no folder" "$breccia" run case.yaml -o file/x
+expect 4 "is not a folder" "$breccia" run case.yaml -o file/x
 expect 0 "results in" "$breccia" run case.yaml --force
 [ "$hash" = "$(grep state_hash "results/case/$model/summary.json")" ] ||
     { echo "FAILED: a repeated run has other bits"; failures=$((failures + 1)); }

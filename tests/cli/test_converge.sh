@@ -92,9 +92,9 @@ grep -q -- "go on with: breccia converge case.yaml --observable E .*-o part --re
     { fail "a stopped ladder does not say how to go on"; cat stopped.txt; }
 head -c -20 part/converge_runs.csv >cut && cp cut part/converge_runs.csv
 expect 0 "results in part" $ladder -o part --resume
-# all but processor time
+# all but processor time, and the digest, which depends on it
 values() {
-    cut -d, -f1-7,9- "$1" | sort
+    sed 's/,[^,]*$//' "$1" | cut -d, -f1-7,9- | sort
 }
 [ "$(values all/converge_runs.csv)" = "$(values part/converge_runs.csv)" ] ||
     fail "a stopped ladder has other values"
@@ -105,11 +105,11 @@ expect 3 "holds other results" "$breccia" converge case.yaml --set test.kind=bra
 size=$(wc -c <all/converge_runs.csv)
 { head -c 5000 /dev/zero | tr '\0' x; echo; } | cat all/converge_runs.csv - before.csv >long
 cp long all/converge_runs.csv
-expect 3 "cannot read the line 'xxx" "$breccia" converge case.yaml --seeds 1 -o all --resume
+expect 3 "the line 'xxx" "$breccia" converge case.yaml --seeds 1 -o all --resume
 [ "$(wc -c <all/converge_runs.csv)" -gt $((size + 5000)) ] || fail "a damaged record is cut"
 cp before.csv all/converge_runs.csv
 echo nonsense >>all/converge_runs.csv
-expect 3 "cannot read the line 'nonsense" "$breccia" converge case.yaml --seeds 1 -o all --resume
+expect 3 "the line 'nonsense" "$breccia" converge case.yaml --seeds 1 -o all --resume
 
 # a value out of its range is left out of the ladder, the ladder is not given up
 expect 0 "out of range" "$breccia" converge case.yaml --observable E --axes step --seeds 1 --refine 2 \

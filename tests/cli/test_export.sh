@@ -104,16 +104,16 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
     for table in curve events; do
         "$breccia" export "$state" --table $table | cmp -s - "$model/$table.csv" ||
             fail "$model: the exported $table is not $table.csv"
-        "$breccia" export "$state" --table $table -o $table.csv
+        "$breccia" export "$state" --table $table -o $table.csv --force
         cmp -s $table.csv "$model/$table.csv" || fail "$model: no $table.csv"
     done
     [ "$("$breccia" export "$state" --table bodies | wc -l)" -eq 39 ] || fail "$model: bodies"
     grep -q '"n_grains": 36,' "$model/summary.json" || fail "$model: platens count as grains"
-    "$breccia" export "$state" --format stl -o fragments.stl || fail "$model: no STL"
+    "$breccia" export "$state" --format stl -o fragments.stl --force || fail "$model: no STL"
     fragments=$(sed -n 's/.*"n_fragments": \([0-9]*\),/\1/p' "$model/summary.json")
     wrong=$(check_stl fragments.stl "$fragments")
     [ -z "$wrong" ] || fail "$model: STL: $wrong"
-    "$breccia" export "$state" --format tess -o state.tess
+    "$breccia" export "$state" --format tess -o state.tess --force
     wrong=$(check_tess state.tess 36)
     [ -z "$wrong" ] || fail "$model: tess: $wrong"
 done

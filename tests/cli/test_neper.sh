@@ -39,7 +39,7 @@ for name in box packing disc; do
     [ $name = packing ] && spheres=on
     case_file again "shape: polyhedron, grains: tess, tess: $name.tess, tess_spheres: $spheres"
     "$breccia" export $name.yaml --format tess -o $name.tess || fail "$name is not written"
-    "$breccia" export again.yaml --format tess -o again.tess || fail "$name is not read"
+    "$breccia" export again.yaml --format tess -o again.tess --force || fail "$name is not read"
     for part in '**cell' '**vertex' '**edge' '**face' '**polyhedron'; do
         count=$(awk -v part="$part" 'found { print $1; exit } $1 == part { found = 1 }' $name.tess)
         again=$(awk -v part="$part" 'found { print $1; exit } $1 == part { found = 1 }' again.tess)
