@@ -50,8 +50,9 @@ static void add_event(const struct loop *l, size_t i, size_t j)
     brc_axpy(event.x, point[VGCM_AT_T], t);
     brc_events_add(l->sim->ctx, &l->sim->events, l->sim->step, &event);
     bool is_whole = false;
+    int flags = vgcm_law_flags(l->law);
     for (size_t k = (size_t)c->p0[i], end = k + (size_t)c->np[i]; k < end; k++)
-        is_whole |= l->p->law[k][VGCM_DN] + l->p->law[k][VGCM_DS] < 1;
+        is_whole |= vgcm_law_is_whole(l->law, flags, l->p->law[k][VGCM_DN], l->p->law[k][VGCM_DS]);
     c->status[i] = is_whole ? BRC_INTACT : BRC_BROKEN;
 }
 
@@ -66,8 +67,9 @@ static __attribute__((noinline)) void add_events(const struct loop *l, const str
 
 /* Opening and trial shear force of points, from their state and the field of their row. The slip of
  * those that were broken and open is the whole displacement. */
-VGCM_INLINE void begin_points(const struct four *x, const brc_lanes place[4],
-                              const brc_lanes own[4], brc_lanes du[3], struct vgcm_point_lanes *w)
+VGCM_INLINE void begin_points(const struct loop *l, int flags, const struct four *x,
+                              const brc_lanes place[4], const brc_lanes own[4], brc_lanes du[3],
+                              struct vgcm_point_lanes *w)
 {
     enum { OWN = VGCM_SLIP_S };
     brc_lanes at[3];
@@ -78,7 +80,8 @@ VGCM_INLINE void begin_points(const struct four *x, const brc_lanes place[4],
     w->damage_old = w->dn + w->ds;
     w->un = at[0];
     w->un_old = at[0] - du[0];
-    w->loose = brc_lanes_less(brc_lanes_all(0), w->un_old) & ~vgcm_lanes_whole(w->damage_old);
+    w->loose = brc_lanes_less(brc_lanes_all(0), w->un_old) &
+               ~vgcm_lanes_whole(l->law, flags, w->dn, w->ds);
     w->slip_s = brc_lanes_pick(w->loose, at[1] - du[1], own[VGCM_SLIP_S - OWN]);
     w->slip_t = brc_lanes_pick(w->loose, at[2] - du[2], own[VGCM_SLIP_T - OWN]);
     w->s = w->slip_s - at[1]; /* eq:vgcm:16, eq:vgcm:18 */
@@ -118,14 +121,14 @@ VGCM_INLINE void step_points(struct loop *l, int flags, const struct four *x, st
     brc_lanes_gather4(place, (const double *const *)at);
     brc_lanes_gather4(own, own_at);
     brc_lanes s = place[VGCM_AT_S], t = place[VGCM_AT_T], area = place[VGCM_AREA];
-    begin_points(x, place, own, du, &w);
+    begin_points(l, flags, x, place, own, du, &w);
     vgcm_lanes_open(l->law, f->bond, flags, &w);
     vgcm_lanes_slide(l->law, f->bond, flags, &w);
     brc_lanes lost = vgcm_lanes_account(l->law, f->bond, flags, area, &w, &l->booked.points);
     brc_lanes fs = w.part * w.s, ft = w.part * w.t, damage = w.dn + w.ds;
     write_points(at, &w, fs, ft, brc_lanes_less(w.damage_old, damage), lost);
     vgcm_force_add(f->force, area * w.pull, area * fs, area * ft, s, t);
-    brc_mask is = vgcm_lanes_whole(damage), broke = vgcm_lanes_whole(w.damage_old) & ~is;
+    brc_mask is = vgcm_lanes_whole(l->law, flags, w.dn, w.ds), broke = w.was & ~is;
     if (brc_lanes_any(broke))
         add_events(l, x, k, f->np, broke);
     if (flags & VGCM_VISCOUS)

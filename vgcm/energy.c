@@ -19,7 +19,7 @@ static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgc
         q.un = at[0][0];
         q.dn = p->law[j][VGCM_DN];
         q.ds = p->law[j][VGCM_DS];
-        bool is_loose = q.un > 0 && vgcm_law_damage(&q) == 1;
+        bool is_loose = q.un > 0 && !vgcm_law_is_whole(bond->law, flags, q.dn, q.ds);
         q.fs = is_loose ? 0 : q.fs - ks * at[1][0];
         q.ft = is_loose ? 0 : q.ft - ks * at[2][0];
     }
@@ -40,7 +40,7 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     const struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
     struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
-    int flags = law->is_brittle ? VGCM_BRITTLE : 0;
+    int flags = vgcm_law_flags(law);
     if (f->phase[i] == VGCM_AFFINE) {
         brc_lanes u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
         for (int k = 0; k < VGCM_N_MOTION; k++) {
@@ -53,7 +53,7 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     }
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         struct vgcm_point q = point_of(c, &bond, i, j, flags);
-        bool is_bond = vgcm_law_damage(&q) < 1;
+        bool is_bond = vgcm_law_is_whole(law, flags, q.dn, q.ds);
         double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->law[j][VGCM_AREA], &q);
         stored[is_bond ? 0 : 1] += normal;
         stored[is_bond ? 0 : 2] += shear;
@@ -88,14 +88,15 @@ void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, d
 double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t row)
 {
     const struct vgcm_points *p = vgcm_point_columns(c);
-    int flags = law->is_brittle ? VGCM_BRITTLE : 0;
+    int flags = vgcm_law_flags(law);
     double whole = 0, left = 0;
     if (vgcm_columns(c)->phase[row] == VGCM_AFFINE)
         return 1;
     for (size_t j = (size_t)c->p0[row], end = j + (size_t)c->np[row]; j < end; j++) {
-        double damage = p->law[j][VGCM_DN] + p->law[j][VGCM_DS], area = p->law[j][VGCM_AREA];
+        brc_lanes dn = brc_lanes_all(p->law[j][VGCM_DN]), ds = brc_lanes_all(p->law[j][VGCM_DS]);
+        double area = p->law[j][VGCM_AREA];
         whole += area;
-        left += area * vgcm_lanes_strength(law, flags, brc_lanes_all(damage))[0];
+        left += area * vgcm_lanes_left(law, flags, dn, ds)[0];
     }
     return whole > 0 ? left / whole : 0;
 }

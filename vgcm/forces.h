@@ -281,12 +281,27 @@ LOOP(4)
 LOOP(5)
 LOOP(6)
 LOOP(7)
+LOOP(8)
+LOOP(10)
+LOOP(12)
+LOOP(14)
 #undef LOOP
 
-#define VGCM_LOOPS                                                                        \
-    {                                                                                     \
-        {forces_0, forces_1, forces_2, forces_3, forces_4, forces_5, forces_6, forces_7}, \
-            walls_loop                                                                    \
+#define VGCM_LOOPS                       \
+    {                                    \
+        {forces_0,                       \
+         forces_1,                       \
+         forces_2,                       \
+         forces_3,                       \
+         forces_4,                       \
+         forces_5,                       \
+         forces_6,                       \
+         forces_7,                       \
+         [VGCM_LOSSES] = forces_8,       \
+         [VGCM_LOSSES + 2] = forces_10,  \
+         [VGCM_LOSSES + 4] = forces_12,  \
+         [VGCM_LOSSES + 6] = forces_14}, \
+            walls_loop                   \
     }
 
 #endif

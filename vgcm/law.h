@@ -3,8 +3,10 @@
  * damage, then compression and Coulomb friction. Opening and tension are positive here. The shear
  * force is the one on b, so it points against the slip.
  *
- * A point's damage is D = min(1, dn + ds); both strengths are the peak values times
- * vgcm_law_strength(D). Tension unloads along the secant, shear elastically. */
+ * Damage by opening dn and by slip ds are displacements past the peak over those at the end. What
+ * is left of both strengths is the curve at D = min(1, dn + ds), vgcm_law_strength(D); or, with
+ * `damage: strength`, 1 less the losses of the curve at dn and at ds. Tension unloads along the
+ * secant, shear elastically. */
 #ifndef VGCM_LAW_H
 #define VGCM_LAW_H
 
@@ -14,7 +16,13 @@
 #define VGCM_INLINE BRC_LANES_INLINE
 
 /* literal flags of the specialised loops */
-enum vgcm_flags { VGCM_BRITTLE = 1, VGCM_LEDGER = 2, VGCM_VISCOUS = 4, VGCM_N_LOOPS = 8 };
+enum vgcm_flags {
+    VGCM_BRITTLE = 1,
+    VGCM_LEDGER = 2,
+    VGCM_VISCOUS = 4,
+    VGCM_LOSSES = 8, /* losses of strength add, not parts of displacements; not with VGCM_BRITTLE */
+    VGCM_N_LOOPS = 16
+};
 
 /* What all contacts of a case share. */
 struct vgcm_law {
@@ -22,6 +30,7 @@ struct vgcm_law {
     double sigma_t, tau;   /* Pa, peak strengths */
     double g_fn, g_fs;     /* J/m2, fracture energies */
     int is_brittle;        /* no softening branch; g_fn and g_fs are not used */
+    int adds_losses;       /* of strength by opening and by slip, not parts of displacements */
     int is_post_peak;      /* g_fn and g_fs count from the peak on, not from zero */
     double kink, slope[2]; /* damage at the kink; fall of the strength per damage, either side */
     double wc;             /* end of softening past the peak, in (post-peak energy)/strength */
@@ -69,6 +78,7 @@ struct vgcm_point_lanes {
     brc_lanes slip_s, slip_t; /* m, plastic slip */
     brc_lanes un, un_old;     /* m, opening, before the step */
     brc_lanes damage_old;     /* dn + ds before the step */
+    brc_mask was;             /* not broken before the step */
     brc_lanes pull_old, pull; /* m, normal force, tension positive */
     brc_lanes secant;         /* m, tension at the peak strength, by the secant */
     brc_lanes s_old, t_old;   /* m, shear force on b before the step */
@@ -109,6 +119,31 @@ VGCM_INLINE brc_lanes vgcm_lanes_strength(const struct vgcm_law *law, int flags,
     brc_lanes left =
         law->slope[1] <= law->slope[0] ? brc_lanes_max(steep, flat) : brc_lanes_min(steep, flat);
     return brc_lanes_max(left, none);
+}
+
+/* What damage by opening and by slip leaves of the peak strengths. Either way each of them alone
+ * falls along its curve, so that the return to the curve in vgcm_lanes_slide is exact in both. */
+VGCM_INLINE brc_lanes vgcm_lanes_left(const struct vgcm_law *law, int flags, brc_lanes dn,
+                                      brc_lanes ds)
+{
+    if (!(flags & VGCM_LOSSES))
+        return vgcm_lanes_strength(law, flags, dn + ds);
+    brc_lanes left = vgcm_lanes_strength(law, flags, dn) + vgcm_lanes_strength(law, flags, ds) - 1;
+    return brc_lanes_max(left, brc_lanes_all(0));
+}
+
+/* Where points are not broken. */
+VGCM_INLINE brc_mask vgcm_lanes_whole(const struct vgcm_law *law, int flags, brc_lanes dn,
+                                      brc_lanes ds)
+{
+    if (flags & VGCM_LOSSES)
+        return brc_lanes_less(brc_lanes_all(0), vgcm_lanes_left(law, flags, dn, ds));
+    return brc_lanes_less(dn + ds, brc_lanes_all(1));
+}
+
+static inline int vgcm_law_flags(const struct vgcm_law *law)
+{
+    return law->is_brittle ? VGCM_BRITTLE : law->adds_losses ? VGCM_LOSSES : 0;
 }
 
 static inline double vgcm_law_strength(const struct vgcm_law *law, double damage)
@@ -168,10 +203,9 @@ static inline double vgcm_law_damage(const struct vgcm_point *p)
     return fmin(p->dn + p->ds, 1);
 }
 
-/* Where points of a damage are not broken. */
-VGCM_INLINE brc_mask vgcm_lanes_whole(brc_lanes damage)
+static inline bool vgcm_law_is_whole(const struct vgcm_law *law, int flags, double dn, double ds)
 {
-    return brc_lanes_less(damage, brc_lanes_all(1));
+    return vgcm_lanes_whole(law, flags, brc_lanes_all(dn), brc_lanes_all(ds))[0] != 0;
 }
 
 /* Normal force: tension falls with the strength, compression is never weakened. */
@@ -195,8 +229,9 @@ VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, brc_lanes e0,
 VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bond[VGCM_N_BOND],
                                  int flags, struct vgcm_point_lanes *p)
 {
-    brc_lanes strength = vgcm_lanes_strength(law, flags, p->damage_old), old = p->un_old;
-    brc_mask whole = vgcm_lanes_whole(p->damage_old);
+    brc_lanes strength = vgcm_lanes_left(law, flags, p->dn, p->ds), old = p->un_old;
+    brc_mask whole = vgcm_lanes_whole(law, flags, p->dn, p->ds);
+    p->was = whole;
     p->secant = p->un;
     if (flags & VGCM_BRITTLE) {
         brc_mask grew = brc_lanes_less(bond[VGCM_U0], p->un);
@@ -219,8 +254,7 @@ VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bon
 VGCM_INLINE void vgcm_lanes_slide(const struct vgcm_law *law, const brc_lanes bond[VGCM_N_BOND],
                                   int flags, struct vgcm_point_lanes *p)
 {
-    brc_lanes e0 = bond[VGCM_E0], damage = p->dn + p->ds;
-    brc_lanes strength = vgcm_lanes_strength(law, flags, damage);
+    brc_lanes e0 = bond[VGCM_E0], strength = vgcm_lanes_left(law, flags, p->dn, p->ds);
     p->pull = vgcm_lanes_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
     brc_lanes limit = vgcm_lanes_limit(law, e0, p->pull, strength);
     brc_mask cut = brc_lanes_less(limit * limit, p->force2);
@@ -229,12 +263,12 @@ VGCM_INLINE void vgcm_lanes_slide(const struct vgcm_law *law, const brc_lanes bo
     if (!p->slides)
         return;
     brc_lanes force = brc_lanes_sqrt(p->force2), inv = 1 / force;
-    brc_mask weakened = cut & vgcm_lanes_whole(damage);
+    brc_mask weakened = cut & vgcm_lanes_whole(law, flags, p->dn, p->ds);
     if (flags & VGCM_BRITTLE)
         p->ds = brc_lanes_pick(weakened, brc_lanes_all(1), p->ds);
     else
         p->ds += brc_lanes_where(weakened, (force - limit) * bond[VGCM_PER_WS]);
-    strength = vgcm_lanes_strength(law, flags, p->dn + p->ds);
+    strength = vgcm_lanes_left(law, flags, p->dn, p->ds);
     p->pull = vgcm_lanes_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
     limit = vgcm_lanes_limit(law, e0, p->pull, strength);
     p->force = force;
@@ -264,7 +298,7 @@ VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
 {
     brc_lanes none = brc_lanes_all(0), half_kn = bond[VGCM_HALF_KN], half_ks = bond[VGCM_HALF_KS];
     brc_lanes damage = p->dn + p->ds;
-    brc_mask was = vgcm_lanes_whole(p->damage_old), is = vgcm_lanes_whole(damage);
+    brc_mask was = p->was, is = vgcm_lanes_whole(law, flags, p->dn, p->ds);
     brc_lanes stored = half_kn * (p->pull * p->un),
               stored_old = half_kn * (p->pull_old * p->un_old);
     brc_lanes excess = half_kn * (p->pull_old * p->un - p->pull * p->un_old); /* work - stored */
@@ -390,8 +424,8 @@ static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags, do
 {
     struct vgcm_point_lanes q = {.dn = brc_lanes_all(p->dn),
                                  .un = brc_lanes_all(p->un),
-                                 .un_old = brc_lanes_all(p->un),
-                                 .damage_old = brc_lanes_all(p->dn + p->ds)};
+                                 .ds = brc_lanes_all(p->ds),
+                                 .un_old = brc_lanes_all(p->un)};
     brc_lanes all[VGCM_N_BOND];
     vgcm_lanes_bond_of(bond, all);
     vgcm_lanes_open(bond->law, all, flags, &q);

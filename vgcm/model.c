@@ -30,6 +30,7 @@ void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *p)
                              .g_fn = p->g_fn,
                              .g_fs = p->g_fs,
                              .is_brittle = p->softening == VGCM_SOFTENING_NONE,
+                             .adds_losses = p->damage == VGCM_DAMAGE_STRENGTH,
                              .is_post_peak = p->energies == VGCM_ENERGIES_POST_PEAK,
                              .viscous = p->viscous};
     if (p->softening == VGCM_SOFTENING_BILINEAR)
@@ -208,7 +209,7 @@ static void select_loops(struct brc_sim *sim, void *state)
     struct vgcm_state *own = state;
     vgcm_law_of(&own->law, sim->params);
     own->flags =
-        (own->law.is_brittle ? VGCM_BRITTLE : 0) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
+        vgcm_law_flags(&own->law) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
         (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
     switch (brc_simd_of(sim->run.simd)) {
     case BRC_SIMD_AVX512:
@@ -257,6 +258,7 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
     static const char *const rule[] = {"gap", "all", "area"};
     static const char *const softening[] = {"none (brittle)", "linear", "bilinear"};
     static const char *const points[] = {"paper", "exact", "one"};
+    static const char *const damage[] = {"displacement", "strength"};
     const struct vgcm_state *own = state;
     const struct vgcm_params *p = sim->params;
     struct vgcm_census census;
@@ -264,12 +266,13 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
     double kn = census.mean_distance > 0 ? p->e_bar / census.mean_distance : 0, eta = p->eta;
     snprintf(text, size,
              "interaction %s: %zu of %zu inner facets, mean centre distance %.4g mm (gap %.4g mm); "
-             "points %s; softening %s; elastic energy at the peak, mean distance: %.4g J/m2 in "
+             "points %s; softening %s, damage by %s; elastic energy at the peak, mean distance: "
+             "%.4g J/m2 in "
              "tension, %.4g J/m2 in shear; fracture energies: %.4g and %.4g J/m2; uniform-strain "
              "estimate for all facets: E = %.4g GPa, nu = %.3g; mean cosine of facet normals and "
              "lines of centres %.6f%s",
              rule[p->interaction], census.n_contacts, census.n_inner, 1e3 * census.mean_distance,
-             1e3 * census.gap, points[p->points], softening[p->softening],
+             1e3 * census.gap, points[p->points], softening[p->softening], damage[p->damage],
              kn > 0 ? vgcm_law_elastic_n(&own->law, kn) : 0,
              kn > 0 ? vgcm_law_elastic_s(&own->law, kn) : 0, p->g_fn, p->g_fs,
              1e-9 * p->e_bar * (2 + 3 * eta) / (4 + eta), (1 - eta) / (4 + eta),

@@ -9,6 +9,7 @@
 #include "vgcm/law.h"
 
 enum vgcm_softening { VGCM_SOFTENING_NONE, VGCM_SOFTENING_LINEAR, VGCM_SOFTENING_BILINEAR };
+enum vgcm_damage { VGCM_DAMAGE_DISPLACEMENT, VGCM_DAMAGE_STRENGTH };
 enum vgcm_energies { VGCM_ENERGIES_TOTAL, VGCM_ENERGIES_POST_PEAK };
 enum vgcm_oblique { VGCM_OBLIQUE_REFUSE, VGCM_OBLIQUE_KEEP };
 enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERACTION_AREA };
@@ -32,6 +33,8 @@ enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERAC
     REAL(energy_ratio, "1", "9.5", "(1, 1e6]",                                                    \
          "g_fn, g_fs auto: fracture energy over the elastic energy at the peak of a contact of "  \
          "the mean distance")                                                                     \
+    CHOICE(damage, "displacement|strength", "displacement",                                       \
+           "opening and slip add as parts of their end displacements, or as losses of strength")  \
     CHOICE(energies, "total|post_peak", "total",                                                  \
            "g_fn and g_fs count from zero displacement, or from the peak on")                     \
     CHOICE(                                                                                       \

@@ -294,16 +294,18 @@ static void ledger_holds_through_failure(void **state)
     static const char *const kind[] = {"tension", "compression"};
     static const char *const law[] = {
         "interaction: all; tau: 20 MPa; g_fs: 600 N/m; mu: 0.3",
+        "interaction: all; tau: 20 MPa; g_fs: 600 N/m; mu: 0.3; damage: strength",
         "interaction: all; softening: none; tau: 20 MPa; mu: 0.3; eta: 0.5"};
+    double damage[6];
     make_packing(f);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 6; k++) {
         char text[256];
         double stored[3];
         snprintf(text, sizeof text,
                  "kind: %s; loading: fixed; rate: 2e-6 1/s; strain_max: 0.005; stop_drop: 0; "
                  "friction: 0.2",
-                 kind[k / 2]);
-        fixture_sim(f, &brc_model_vgcm, law[k % 2], text, "");
+                 kind[k / 3]);
+        fixture_sim(f, &brc_model_vgcm, law[k % 3], text, "");
         fixture_steps(f, 2000);
         const struct brc_ledger *l = &f->sim.ledger;
         assert_true(f->sim.events.table.n > 50);
@@ -313,8 +315,11 @@ static void ledger_holds_through_failure(void **state)
         CHECK_NEAR(l->bond + l->contact_normal + l->contact_shear, sum, 1e-4 * scale, 0);
         CHECK_NEAR(l->bond, stored[0], 1e-4 * scale, 0);
         CHECK_NEAR(brc_ledger_residual(l), 0, 1e-5, 0);
-        assert_true(l->damage > 0 && (l->friction > 0 || k < 2));
+        assert_true(l->damage > 0 && (l->friction > 0 || k < 3));
+        damage[k] = l->damage;
     }
+    /* opening and slip go together: the two ways to add them part */
+    assert_true(damage[0] != damage[1] && damage[3] != damage[4]);
 }
 
 /* Two spheres of 6 mm, never bonded, with their centres at the distance given. */
@@ -486,10 +491,11 @@ static void loose_rows_have_no_forces(void **state)
     struct fixture *f = *state;
     static const char *const settings[] = {
         "interaction: all", "interaction: all; softening: none",
+        "interaction: all; eta: 0.5; tau: 30 MPa; g_fs: 500 J/m2; damage: strength",
         "interaction: all; mu: 0.6; eta: 0.5; tau: 30 MPa; g_fs: 500 J/m2"};
     static way loose, literal;
     make_pack(f, 3, 0.8);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         struct loose r;
         lead(f, false, settings[k], loose, &r);
         struct brc_ledger ledger = f->sim.ledger;

@@ -5,7 +5,11 @@
 #include "vgcm/law.h"
 
 static const double AREA = 2e-6, DISTANCE = 5.1017e-3;
-enum { SOFT = VGCM_LEDGER, BRITTLE = VGCM_LEDGER | VGCM_BRITTLE };
+enum {
+    SOFT = VGCM_LEDGER,
+    LOSSES = VGCM_LEDGER | VGCM_LOSSES,
+    BRITTLE = VGCM_LEDGER | VGCM_BRITTLE
+};
 
 static struct vgcm_law paper_law(void)
 {
@@ -220,6 +224,57 @@ static void damage_is_shared(void **state)
     check_balance(&d);
 }
 
+/* One kind of damage alone: the same point, whichever way the two would add. */
+static void one_damage_alone_adds_nothing(void **state)
+{
+    struct vgcm_law law = paper_law();
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct drive d = begin(&law, SOFT), own = begin(&law, LOSSES);
+        double open = i == 0 ? d.bond.u0 + d.bond.wn : 0;
+        double slip = i == 1 ? law.tau / d.bond.ks + d.bond.ws : 0;
+        for (int k = 0; k < 2000; k++) {
+            drive(&d, 1.01 * open / 2000, 1.01 * slip / 2000, 0, 1);
+            drive(&own, 1.01 * open / 2000, 1.01 * slip / 2000, 0, 1);
+            CHECK_NEAR(own.p.fn, d.p.fn, 1e-12 * AREA * law.sigma_t, 1e-12);
+            CHECK_NEAR(own.p.fs, d.p.fs, 1e-12 * AREA * law.tau, 1e-12);
+        }
+        CHECK_NEAR(own.p.lost, (i == 0 ? law.g_fn : law.g_fs) * AREA, 0, 1e-4);
+        check_balance(&own);
+    }
+}
+
+/* A slip of 0.05 of its end costs 1/4 of both strengths; an opening of 0.08 of its end 0.4 more; at
+ * 0.15 nothing is left, where parts of displacements would break at 0.95. */
+static void losses_of_strength_add(void **state)
+{
+    struct vgcm_law law = paper_law();
+    struct drive d = begin(&law, LOSSES), s;
+    const double left = 1 - 0.25 - 0.4;
+    (void)state;
+    drive(&d, 0, law.tau / d.bond.ks + 0.05 * d.bond.ws, 0, 4000);
+    CHECK_NEAR(d.p.ds, 0.05, 1e-9, 0);
+    CHECK_NEAR(-d.p.fs, 0.75 * AREA * law.tau, 0, 1e-9);
+    drive(&d, d.bond.u0 + 0.08 * d.bond.wn, 0, 0, 8000);
+    CHECK_NEAR(d.p.dn, 0.08, 1e-9, 0);
+    s = d;
+    /* the shear force is cut back to what the opening leaves: some of it slips, and costs more */
+    double lost = 5 * (d.p.ds - 0.05);
+    CHECK_NEAR(d.p.fn, (left - lost) * AREA * law.sigma_t, 0, 1e-6);
+    CHECK_NEAR(-d.p.fs, (left - lost) * AREA * law.tau - law.mu * d.p.fn, 0, 1e-6);
+    assert_true(vgcm_law_is_whole(&law, LOSSES, d.p.dn, d.p.ds));
+    drive(&d, 0.07 * d.bond.wn, 0, 0, 4000);
+    assert_false(vgcm_law_is_whole(&law, LOSSES, d.p.dn, d.p.ds));
+    assert_true(d.p.fn == 0 && d.p.fs == 0 && d.p.dn < 0.15 && d.p.dn + d.p.ds < 0.3);
+    check_balance(&d);
+    double dn = d.p.dn;
+    drive(&d, 0.2 * d.bond.wn, 1e-5, 0, 100); /* for good */
+    assert_true(d.p.dn == dn && d.p.fn == 0 && d.p.fs == 0);
+    drive(&s, -(s.bond.u0 + 0.08 * s.bond.wn) / 2, 0, 0, 100); /* tension unloads by the secant */
+    CHECK_NEAR(s.p.fn, (left - lost) * AREA * law.sigma_t / 2, 0, 1e-6);
+    check_balance(&s);
+}
+
 static void compression_raises_the_shear_strength(void **state)
 {
     struct vgcm_law law = paper_law();
@@ -322,6 +377,8 @@ int main(void)
         cmocka_unit_test(tension_unloads_by_the_secant),
         cmocka_unit_test(shear_unloads_elastically),
         cmocka_unit_test(damage_is_shared),
+        cmocka_unit_test(one_damage_alone_adds_nothing),
+        cmocka_unit_test(losses_of_strength_add),
         cmocka_unit_test(compression_raises_the_shear_strength),
         cmocka_unit_test(broken_points_push_and_rub_only),
         cmocka_unit_test(broken_points_follow_their_own_law),
