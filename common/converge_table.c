@@ -233,8 +233,12 @@ static void put_csv_row(FILE *out, const struct brc_converge_report *r, int i)
 {
     static const char *const role[] = {"case", "reference", "ladder", "choice", "grains"};
     const struct brc_converge_row *row = &r->row[i];
-    fprintf(out, "%s,%s,%s,%s,%d,%.9g,%.6g,%.6g,%.6g,%.9g,%.6g", r->model->model->name,
-            row->setting->axis, row->setting->label, role[row->setting->role], row->n_good,
+    const char *const words[] = {r->model->model->name, row->setting->axis, row->setting->label};
+    for (int k = 0; k < 3; k++) {
+        brc_output_cell(out, words[k]);
+        fputc(',', out);
+    }
+    fprintf(out, "%s,%d,%.9g,%.6g,%.6g,%.6g,%.9g,%.6g", role[row->setting->role], row->n_good,
             row->value, row->error.mean, row->error.deviation, row->error.single, row->steps,
             row->cpu_s);
     for (int k = 0; k < 2; k++)

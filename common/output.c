@@ -14,7 +14,7 @@ static const struct brc_param output_params[] = {BRC_PARAM_LIST(BRC_OUTPUT_PARAM
 const struct brc_param_list brc_output_param_list =
     BRC_PARAMS(output_params, struct brc_output_params);
 
-enum { PATH_SIZE = 4096 };
+enum { PATH_SIZE = 4096, CELL_SIZE = 512 };
 
 /* A text file that is written beside its place and renamed when it is complete. */
 struct draft {
@@ -153,16 +153,37 @@ const struct brc_summary_value *brc_output_result(const struct brc_summary *s, c
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
 
+void brc_output_cell(FILE *out, const char *text)
+{
+    if (!strpbrk(text, ",\"\r\n")) {
+        fputs(text, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *text; text++)
+        fprintf(out, *text == '"' ? "\"%c" : "%c", *text);
+    fputc('"', out);
+}
+
+/* Scratch is no result, and a file does not hold it. */
+static bool is_state(const struct brc_field *f)
+{
+    return (f->flags & BRC_STATE) != 0;
+}
+
 static void csv_header(FILE *out, const struct brc_table *t)
 {
     const char *comma = "";
+    char cell[CELL_SIZE];
     for (int i = 0; i < t->set.n; i++) {
         const struct brc_field *f = &t->set.fields[i];
-        for (int j = 0; j < f->width; j++) {
+        for (int j = 0; j < f->width && is_state(f); j++) {
             if (f->width == 1)
-                fprintf(out, "%s%s [%s]", comma, f->name, f->unit);
+                snprintf(cell, sizeof cell, "%s [%s]", f->name, f->unit);
             else
-                fprintf(out, "%s%s_%d [%s]", comma, f->name, j + 1, f->unit);
+                snprintf(cell, sizeof cell, "%s_%d [%s]", f->name, j + 1, f->unit);
+            fputs(comma, out);
+            brc_output_cell(out, cell);
             comma = ",";
         }
     }
@@ -195,7 +216,7 @@ void brc_output_table(FILE *out, const struct brc_table *t)
         for (int i = 0; i < t->set.n; i++) {
             const struct brc_field *f = &t->set.fields[i];
             size_t width = (size_t)f->width;
-            for (size_t j = 0; j < width; j++) {
+            for (size_t j = 0; j < width && is_state(f); j++) {
                 fputs(comma, out);
                 csv_value(out, f, brc_table_column(t, i), row * width + j);
                 comma = ",";

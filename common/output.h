@@ -76,7 +76,11 @@ struct brc_summary {
 int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s);
 /* A result by name, NULL when the test has none of that name. */
 const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name);
-/* One column a value, the header names them with their units: "step [1],x_1 [m],x_2 [m]". */
+/* A text as one field of a CSV file, by RFC 4180: in quotes where it holds commas, quotes or line
+ * ends. */
+void brc_output_cell(FILE *out, const char *text);
+/* One column a value of the BRC_STATE fields; the header names them with their units:
+ * "step [1],x_1 [m],x_2 [m]". */
 int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t);
 void brc_output_table(FILE *out, const struct brc_table *t);
 /* A text file with this content. */
