@@ -302,7 +302,7 @@ static int put_tess(struct brc_context *ctx, FILE *out, const void *what)
 /* The specimen of a state or of a case file. */
 static int load_specimen(struct brc_context *ctx, const char *path, struct loaded *l)
 {
-    if (brc_seal_is_there(path))
+    if (brc_seal_is_there(path, &brc_seal_state))
         return load(ctx, path, l);
     memset(l, 0, sizeof *l);
     BRC_TRY(brc_job_read(ctx, &l->job, path, NULL, 0));

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { NAME_SIZE = 256, MAX_GROUPS = 64 };
 
@@ -107,25 +108,16 @@ static int find_step(void *user, const struct brc_h5_item *item)
     return 0;
 }
 
-static int find_mesh(void *user, const struct brc_h5_item *item)
-{
-    bool *is_mesh = user;
-    *is_mesh = *is_mesh || strncmp(item->path, "VTKHDF/", 7) == 0;
-    return 0;
-}
-
 static int print_all(const struct brc_h5_file *f, FILE *out)
 {
     struct info i = {.f = f, .out = out};
     char *program;
     double step = NAN;
-    bool is_mesh = false;
     BRC_TRY(brc_h5_get_text(f, "provenance/program", &program));
     free(program);
     BRC_TRY(brc_h5_visit(f, find_step, &step));
-    BRC_TRY(brc_h5_visit(f, find_mesh, &is_mesh));
     fprintf(out, "%s: %s of breccia, step %.0f\n\n", f->path,
-            is_mesh ? "frame (VTKHDF)" : "saved state", step);
+            f->seal == &brc_seal_frame ? "frame (VTKHDF)" : "saved state", step);
     BRC_TRY(brc_h5_visit(f, print_texts, &i));
     BRC_TRY(brc_h5_visit(f, list_group, &i));
     for (; i.now < i.n_groups; i.now++) {
@@ -137,9 +129,17 @@ static int print_all(const struct brc_h5_file *f, FILE *out)
 
 int brc_info_print(struct brc_context *ctx, FILE *out, const char *path)
 {
+    static const struct brc_seal_kind *const kinds[] = {&brc_seal_state, &brc_seal_frame};
     struct brc_h5_file f;
-    BRC_TRY(brc_seal_is_there(path) ? brc_h5_open_sealed(ctx, path, BRC_H5_FORMAT, &f)
-                                    : brc_h5_open(ctx, path, &f));
+    const struct brc_seal_kind *kind = NULL;
+    for (int i = 0; i < 2 && !kind; i++)
+        kind = brc_seal_is_there(path, kinds[i]) ? kinds[i] : NULL;
+    if (!kind && access(path, R_OK) == 0)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "%s is neither a saved state nor a frame of breccia, has lost its first bytes, or "
+                 "is of a version before %s",
+                 path, BRC_VERSION);
+    BRC_TRY(brc_h5_open(ctx, path, kind ? kind : &brc_seal_state, &f));
     int code = print_all(&f, out);
     brc_h5_close(&f);
     return code;

@@ -7,9 +7,6 @@
 #include "h5.h"
 #include "state.h"
 
-/* 2: sealed, see seal.h; with a hash of the specimen. 3: the case holds its overrides as values. */
-enum { BRC_H5_FORMAT = 3 };
-
 /* A text of the group /provenance. */
 struct brc_h5_text {
     const char *name, *text;

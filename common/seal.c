@@ -10,8 +10,13 @@
 #include <string.h>
 
 enum { BLOCK_SIZE = 1 << 16 }; /* a multiple of 8: the hash goes on between blocks */
-static const char MARK[] = "breccia state, format ";
-static const char ADVICE[] = "use an undamaged copy, or start the run anew with --force";
+/* States: 2: with a hash of the specimen. 3: the case holds its overrides as values. */
+const struct brc_seal_kind brc_seal_state = {
+    "state", 3, "use an undamaged copy, or start the run anew with --force"};
+const struct brc_seal_kind brc_seal_frame = {
+    "frame", 1, "use an undamaged copy, or start the run anew with --force"};
+
+enum { MARK_SIZE = 64 };
 
 /* What a seal says. */
 struct seal {
@@ -19,14 +24,23 @@ struct seal {
     uint64_t size, hash;
 };
 
-static void print_seal(const struct seal *s, char text[BRC_SEAL_SIZE])
+/* What a seal begins with; returns its length. */
+static size_t make_mark(const struct brc_seal_kind *kind, char mark[MARK_SIZE])
 {
+    return (size_t)snprintf(mark, MARK_SIZE, "breccia %s, format ", kind->name);
+}
+
+static void print_seal(const struct brc_seal_kind *kind, const struct seal *s,
+                       char text[BRC_SEAL_SIZE])
+{
+    char mark[MARK_SIZE];
+    make_mark(kind, mark);
     memset(text, '\n', BRC_SEAL_SIZE);
     int n = snprintf(text, BRC_SEAL_SIZE,
                      "%s%d\nbytes %" PRIu64 "\nhash %016" PRIx64 "\n"
                      "From byte %d on this is an HDF5 file, which any HDF5 reader opens as it is;\n"
                      "bytes is the size of the whole, hash is that of what follows this block.\n",
-                     MARK, s->format, s->size, s->hash, BRC_SEAL_SIZE);
+                     mark, s->format, s->size, s->hash, BRC_SEAL_SIZE);
     text[n] = '\n';
 }
 
@@ -53,70 +67,75 @@ static int measure(struct brc_context *ctx, const char *path, FILE *file, struct
     return 0;
 }
 
-void brc_seal_make(char seal[BRC_SEAL_SIZE], int format, const void *bytes, size_t n)
+void brc_seal_make(char seal[BRC_SEAL_SIZE], const struct brc_seal_kind *kind, const void *bytes,
+                   size_t n)
 {
-    const struct seal s = {format, BRC_SEAL_SIZE + n, brc_hash_bytes(bytes, n, BRC_HASH_SEED)};
-    print_seal(&s, seal);
+    const struct seal s = {kind->format, BRC_SEAL_SIZE + n,
+                           brc_hash_bytes(bytes, n, BRC_HASH_SEED)};
+    print_seal(kind, &s, seal);
 }
 
 /* Takes the numbers out of a seal, as far as they are there: it is compared as a whole later. */
-static bool read_seal(const char text[BRC_SEAL_SIZE], struct seal *s)
+static bool read_seal(const char text[BRC_SEAL_SIZE], const struct brc_seal_kind *kind,
+                      struct seal *s)
 {
-    char line[BRC_SEAL_SIZE + 1];
+    char line[BRC_SEAL_SIZE + 1], mark[MARK_SIZE];
+    size_t length = make_mark(kind, mark);
     memcpy(line, text, BRC_SEAL_SIZE);
     line[BRC_SEAL_SIZE] = '\0';
-    if (strncmp(line, MARK, sizeof MARK - 1) != 0)
+    if (strncmp(line, mark, length) != 0)
         return false;
     const char *size = strstr(line, "\nbytes "), *hash = strstr(line, "\nhash ");
-    s->format = (int)strtol(line + sizeof MARK - 1, NULL, 10);
+    s->format = (int)strtol(line + length, NULL, 10);
     s->size = size ? strtoull(size + 7, NULL, 10) : 0;
     s->hash = hash ? strtoull(hash + 6, NULL, 16) : 0;
     return true;
 }
 
-static int check_file(struct brc_context *ctx, const char *path, FILE *file, int format)
+static int check_file(struct brc_context *ctx, const char *path, FILE *file,
+                      const struct brc_seal_kind *kind)
 {
     char text[BRC_SEAL_SIZE], expected[BRC_SEAL_SIZE];
-    struct seal said, found = {.format = format};
-    if (fread(text, 1, BRC_SEAL_SIZE, file) != BRC_SEAL_SIZE || !read_seal(text, &said))
+    struct seal said, found = {.format = kind->format};
+    if (fread(text, 1, BRC_SEAL_SIZE, file) != BRC_SEAL_SIZE || !read_seal(text, kind, &said))
         BRC_FAIL(ctx, BRC_ERR_IO,
-                 "cannot read %s: it is no state file of breccia, cut short, or of a version "
+                 "cannot read %s: it is not a %s file of breccia, is cut short, or is of a version "
                  "before %s; %s",
-                 path, BRC_VERSION, ADVICE);
-    if (said.format != format)
+                 path, kind->name, BRC_VERSION, kind->advice);
+    if (said.format != kind->format)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%s has the state format %d, breccia %s reads %d; resume with the version that "
+                 "%s has the %s format %d, breccia %s reads %d; resume with the version that "
                  "wrote it, or start the run anew with --force",
-                 path, said.format, BRC_VERSION, format);
+                 path, kind->name, said.format, BRC_VERSION, kind->format);
     BRC_TRY(measure(ctx, path, file, &found));
     if (found.size != said.size)
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "%s has %" PRIu64 " bytes, it was saved with %" PRIu64 ": it is cut short or "
                  "overwritten; %s",
-                 path, found.size, said.size, ADVICE);
-    print_seal(&found, expected);
+                 path, found.size, said.size, kind->advice);
+    print_seal(kind, &found, expected);
     if (memcmp(text, expected, BRC_SEAL_SIZE) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "%s is damaged: its content does not match its hash; %s", path,
-                 ADVICE);
+                 kind->advice);
     return 0;
 }
 
-int brc_seal_check(struct brc_context *ctx, const char *path, int format)
+int brc_seal_check(struct brc_context *ctx, const char *path, const struct brc_seal_kind *kind)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", path, strerror(errno));
-    int code = check_file(ctx, path, file, format);
+    int code = check_file(ctx, path, file, kind);
     fclose(file);
     return code;
 }
 
-bool brc_seal_is_there(const char *path)
+bool brc_seal_is_there(const char *path, const struct brc_seal_kind *kind)
 {
-    char text[sizeof MARK - 1];
+    char text[MARK_SIZE], mark[MARK_SIZE];
+    size_t length = make_mark(kind, mark);
     FILE *file = fopen(path, "rb");
-    bool is_there =
-        file && fread(text, sizeof text, 1, file) == 1 && memcmp(text, MARK, sizeof text) == 0;
+    bool is_there = file && fread(text, length, 1, file) == 1 && memcmp(text, mark, length) == 0;
     if (file)
         fclose(file);
     return is_there;

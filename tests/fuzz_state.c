@@ -187,7 +187,7 @@ static void write_changed(struct wishes *w)
     struct brc_context ctx = BRC_CONTEXT_INIT;
     struct brc_state state;
     struct brc_h5_file f;
-    FUZZ_MUST(brc_h5_create_sealed(&ctx, fuzz_path(), BRC_H5_FORMAT, &f) == 0);
+    FUZZ_MUST(brc_h5_create(&ctx, fuzz_path(), &brc_seal_state, &f) == 0);
     brc_h5_put_group(&f, "provenance");
     put_text(&f, w, "model", scene.model->name);
     put_text(&f, w, "specimen_hash", scene.specimen_hash);

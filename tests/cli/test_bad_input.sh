@@ -200,11 +200,11 @@ for at in 1 30 60 511 513 4321 $(($(stat -c %s good.h5) - 1)); do
     refuse 4 "$state" "--force" -- resume
 done
 echo "a text" >$state
-refuse 4 "$state: it is no state file of breccia" "--force" -- resume
+refuse 4 "$state: it is not a state file of breccia" "--force" -- resume
 printf '\211HDF\r\n\032\n' >$state
-refuse 4 "$state: it is no state file of breccia" -- resume
+refuse 4 "$state: it is not a state file of breccia" -- resume
 tail -c +513 good.h5 >$state # an HDF5 file, but without a seal
-refuse 4 "$state: it is no state file of breccia" -- resume
+refuse 4 "$state: it is not a state file of breccia" -- resume
 sed '1s/format [0-9]*/format 9/' good.h5 >$state
 refuse 3 "$state has the state format 9, breccia" "reads " "resume with the version" -- resume
 rm $state && mkdir $state

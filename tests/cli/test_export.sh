@@ -127,5 +127,5 @@ says "there are: stl, tess" "$breccia" export "$state" --format obj
 says "export needs either" "$breccia" export "$state"
 says "export needs a file" "$breccia" export --format stl
 says "cannot read" "$breccia" info absent.h5
-says "no HDF5 file" "$breccia" info case.yaml
+says "neither a saved state nor a frame" "$breccia" info case.yaml
 [ $failures -eq 0 ]

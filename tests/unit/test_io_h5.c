@@ -118,7 +118,7 @@ static void test_fields_describe_themselves(void **state)
     make_path(path);
     make_sim(f);
     save(f, path);
-    CHECK_OK(&f->ctx, brc_h5_open_sealed(&f->ctx, path, BRC_H5_FORMAT, &file));
+    CHECK_OK(&f->ctx, brc_h5_open(&f->ctx, path, &brc_seal_state, &file));
     static const struct {
         const char *field, *label, *text;
     } expected[] = {
@@ -155,7 +155,8 @@ static void seal(const char *path, int format, size_t skip)
     size_t n = fread(bytes, 1, 1 << 20, file);
     fclose(file);
     assert_in_range(n, skip + 1, (1 << 20) - 1);
-    brc_seal_make(seal, format, bytes + skip, n - skip);
+    const struct brc_seal_kind kind = {"state", format, ""};
+    brc_seal_make(seal, &kind, bytes + skip, n - skip);
     file = fopen(path, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(seal, sizeof seal, 1, file), 1);
@@ -185,11 +186,11 @@ static void test_foreign_files(void **state)
     fails_to_load(f, path, BRC_ERR_IO, "No such file");
     FILE *out = fopen(path, "w");
     assert_non_null(out);
-    fputs("this is no HDF5 file", out);
+    fputs("this is not an HDF5 file", out);
     fclose(out);
-    fails_to_load(f, path, BRC_ERR_IO, "no state file of breccia");
-    seal(path, BRC_H5_FORMAT, 0);
-    fails_to_load(f, path, BRC_ERR_IO, "no HDF5 file");
+    fails_to_load(f, path, BRC_ERR_IO, "not a state file of breccia");
+    seal(path, brc_seal_state.format, 0);
+    fails_to_load(f, path, BRC_ERR_IO, "not an HDF5 file");
     unlink(path);
 }
 
@@ -244,7 +245,7 @@ static void test_other_format(void **state)
     make_path(path);
     make_sim(f);
     save(f, path);
-    seal(path, BRC_H5_FORMAT + 1, BRC_SEAL_SIZE);
+    seal(path, brc_seal_state.format + 1, BRC_SEAL_SIZE);
     CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_INPUT,
                 "has the state format 4, breccia " BRC_VERSION " reads 3");
     unlink(path);
