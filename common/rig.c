@@ -39,7 +39,7 @@ static const double LONGEST_START = 3;
 enum { LEAST_START = 20 };
 /* Automatic strain of a step over strain_max: adaptive loading's first one, over the target too,
  * and that of fixed loading. */
-static const double FIRST_PART = 0.003, FIXED_PART = 1e-5;
+static const double FIRST_PART = 0.005, FIXED_PART = 1e-5;
 enum { UNBALANCED_STEPS = 5 }; /* steps between two measures of the unbalanced force */
 
 int brc_rig_platens(const struct brc_test_params *test)
@@ -115,13 +115,20 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
         return 0;
     rig->rate = rig->params.rate;
     set_platen_velocities(sim);
-    double middle = 0.5 * (low[rig->axis] + high[rig->axis]);
     for (size_t i = 0; i < sim->bodies.n_grains; i++) {
-        sim->bodies.v[i][rig->axis] =
-            -rig->sense * rig->rate * (sim->bodies.x[i][rig->axis] - middle);
+        brc_rig_field(sim, i, sim->bodies.v[i]);
         brc_copy(sim->bodies.v_mean[i], sim->bodies.v[i]);
     }
     return 0;
+}
+
+void brc_rig_field(const struct brc_sim *sim, size_t grain, double v[3])
+{
+    const struct brc_rig *rig = &sim->rig;
+    const struct brc_platen *p = &rig->platen[0];
+    double middle = sim->bodies.x0[p->body][rig->axis] + 0.5 * rig->length * p->n[rig->axis];
+    brc_set(v, 0, 0, 0);
+    v[rig->axis] = -rig->sense * rig->rate * (sim->bodies.x0[grain][rig->axis] - middle);
 }
 
 void brc_rig_free(struct brc_sim *sim)

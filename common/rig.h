@@ -17,7 +17,7 @@ enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
            "adaptive: fast while the specimen is elastic, slow while it breaks; fixed: at rate") \
     REAL(rate, "1/s", "0 1/s", "[0, inf)",                                                       \
          "fixed loading: strain rate; adaptive: the first one; 0: strain_max / 1e5 a second, "   \
-         "strain_max x target x 0.003; "                                                         \
+         "strain_max x target x 0.005; "                                                         \
          "in the quasi-static regime one step is one second")                                    \
     REAL(target, "1", "0.003", "(0, 1)",                                                         \
          "adaptive: strain a step, over the strain at which damage began")                       \
@@ -86,6 +86,9 @@ int brc_rig_platens(const struct brc_test_params *test);
  * velocity field of a uniform strain at the starting rate. Called once, when bodies have
  * their places. */
 int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test);
+/* Velocity [m/s] of a grain in the field of a uniform strain at the present rate, about the middle
+ * of the specimen; needs platens. */
+void brc_rig_field(const struct brc_sim *sim, size_t grain, double v[3]);
 void brc_rig_free(struct brc_sim *sim);
 /* After the forces of a step: platen forces, boundary work, strain, loading rate. */
 int brc_rig_step(struct brc_sim *sim);

@@ -155,6 +155,8 @@ static int update_masses(struct brc_sim *sim, bool is_listed)
 {
     double margin = sim->run.mass_margin, mass = 0;
     brc_integrate_scale_masses(sim);
+    if (sim->step == 0)
+        BRC_TRY(brc_integrate_loose_masses(sim));
     if (margin >= SAFE_MASS_MARGIN || !is_listed)
         return 0;
     for (size_t i = 0; i < sim->bodies.n_grains; i++)
@@ -205,16 +207,13 @@ static double mean_grain_radius(const struct brc_sim *sim)
     return cbrt(volume / (double)f->n_cells * 3 / (4 * BRC_PI));
 }
 
+/* Scaled masses know nothing of the true ones. */
 static void start_masses(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
-    for (size_t i = 0; i < b->n_grains; i++) {
+    for (size_t i = 0; i < b->n_grains && sim->run.regime == BRC_DYNAMIC; i++) {
         b->mass[i] = b->true_mass[i];
         brc_copy(b->inertia[i], b->true_inertia[i]);
-        if (sim->run.regime != BRC_QUASI_STATIC)
-            continue;
-        double largest = fmax(b->inertia[i][0], fmax(b->inertia[i][1], b->inertia[i][2]));
-        brc_set(b->inertia[i], largest, largest, largest);
     }
 }
 

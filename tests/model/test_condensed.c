@@ -46,12 +46,13 @@ static size_t count_held(const struct fixture *f)
     return n;
 }
 
-/* The error of the load is of second order in the path between two literal evaluations. */
+/* The error of the load falls with the path between two literal evaluations. (Where springs slip,
+ * it is not smooth in the path: the two are far apart.) */
 static void load_is_that_of_literal_springs(void **state)
 {
     struct fixture *f = *state;
     double literal = force_after(f, "compression", "eps_th: 0.05; evaluation: literal"), error[2];
-    static const char *const paths[2] = {"0.01", "0.001"};
+    static const char *const paths[2] = {"0.01", "0.0002"};
     for (int i = 0; i < 2; i++) {
         char settings[100];
         snprintf(settings, sizeof settings,
@@ -64,7 +65,7 @@ static void load_is_that_of_literal_springs(void **state)
         assert_true(f->sim.events.table.n == 0);
     }
     assert_true(error[0] > 0 && error[0] < 2e-3);
-    assert_true(error[1] < error[0] / 2);
+    assert_true(error[1] < error[0] / 4);
 }
 
 /* Bonds begin to pull, or cease to, within paths of this size: a tangent that went on through that

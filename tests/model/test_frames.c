@@ -88,7 +88,7 @@ static void test_meshes(void **state)
             continue;
         fixture_specimen(f, specimen);
         fixture_sim(f, model, "", test, "");
-        fixture_steps(f, 395);
+        fixture_steps(f, 450);
         assert_true(f->sim.events.table.n > 0);
         CHECK_OK(&f->ctx, brc_frame_mesh_make(&f->ctx, &f->sim, &frame));
         check_grains(f, &frame);
