@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "casefile.h"
 
+#include "input_file.h"
+
 #include <yaml.h>
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -514,21 +515,12 @@ int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, 
 int brc_case_read(struct brc_context *ctx, const char *path, struct brc_case *c)
 {
     memset(c, 0, sizeof *c);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot open the case file %s: %s", path, strerror(errno));
-    char *text = brc_alloc(ctx, BRC_CASE_MAX_BYTES + 1, 1);
-    if (!text) {
-        fclose(file);
-        return BRC_ERR_MEMORY;
-    }
-    errno = 0;
-    size_t size = fread(text, 1, BRC_CASE_MAX_BYTES + 1, file);
-    int code = ferror(file)
-                   ? brc_error_set(ctx, BRC_ERR_IO, __FILE__, __LINE__,
-                                   "cannot read the case file %s: %s", path, strerror(errno))
-                   : brc_case_parse(ctx, path, text, size, c);
-    fclose(file);
+    const struct brc_input in = {
+        .noun = "the case file", .path = path, .largest = BRC_CASE_MAX_BYTES};
+    char *text;
+    size_t size;
+    BRC_TRY(brc_input_read(ctx, &in, &text, &size));
+    int code = brc_case_parse(ctx, path, text, size, c);
     free(text);
     return code;
 }

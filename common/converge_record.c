@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { LINE_SIZE = 4096, HEADER_SIZE = 2048, N_COLUMNS = 8 };
@@ -142,6 +143,9 @@ int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record
     r->file = fopen(r->path, "a+");
     if (!r->file)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
+    struct stat status;
+    if (fstat(fileno(r->file), &status) != 0 || !S_ISREG(status.st_mode))
+        BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a plain file; choose another folder with -o", r->path);
     BRC_TRY(lock(ctx, r));
     make_header(study, header);
     /* another ladder may have begun, and ended, since the folder was looked at */

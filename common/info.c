@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "info.h"
 
+#include "input_file.h"
 #include "io_h5.h"
 #include "seal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { NAME_SIZE = 256, MAX_GROUPS = 64 };
 
@@ -131,15 +131,19 @@ int brc_info_print(struct brc_context *ctx, FILE *out, const char *path)
 {
     static const struct brc_seal_kind *const kinds[] = {&brc_seal_state, &brc_seal_frame};
     struct brc_h5_file f;
+    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
     const struct brc_seal_kind *kind = NULL;
+    FILE *file;
+    BRC_TRY(brc_input_open(ctx, &in, &file, NULL));
+    fclose(file);
     for (int i = 0; i < 2 && !kind; i++)
         kind = brc_seal_is_there(path, kinds[i]) ? kinds[i] : NULL;
-    if (!kind && access(path, R_OK) == 0)
+    if (!kind)
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "%s is neither a saved state nor a frame of breccia, has lost its first bytes, or "
                  "is of a version before %s",
                  path, BRC_VERSION);
-    BRC_TRY(brc_h5_open(ctx, path, kind ? kind : &brc_seal_state, &f));
+    BRC_TRY(brc_h5_open(ctx, path, kind, &f));
     int code = print_all(&f, out);
     brc_h5_close(&f);
     return code;

@@ -3,10 +3,10 @@
  * follow from the loops of the faces. */
 #include "complex.h"
 #include "hilbert.h"
+#include "input_file.h"
 #include "neper.h"
 #include "vec.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -483,20 +483,9 @@ static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_
 
 static int read_text(struct tess *t)
 {
-    FILE *file = fopen(t->path, "rb");
-    long size = -1;
-    if (file && fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) >= 0)
-        rewind(file);
-    t->text = size >= 0 ? brc_alloc(t->ctx, (size_t)size + 1, 1) : NULL;
-    bool is_read = t->text && fread(t->text, 1, (size_t)size, file) == (size_t)size;
-    int reason = errno;
-    if (file)
-        fclose(file);
-    t->size = is_read ? (size_t)size : 0;
-    if (!is_read && t->ctx->code == 0)
-        BRC_FAIL(t->ctx, BRC_ERR_IO, "specimen.tess: cannot read '%s': %s", t->path,
-                 strerror(reason));
-    return t->ctx->code;
+    const struct brc_input in = {
+        .key = "specimen.tess", .path = t->path, .largest = BRC_INPUT_LARGEST};
+    return brc_input_read(t->ctx, &in, &t->text, &t->size);
 }
 
 int brc_neper_read(struct brc_context *ctx, const char *path, double metres, bool has_spheres,

@@ -2,14 +2,14 @@
 #include "numbers.h"
 
 #include "grow.h"
+#include "input_file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_SIZE = 512 };
+enum { LINE_SIZE = 510 };
 
 struct reader {
     struct brc_context *ctx;
@@ -53,7 +53,7 @@ static int take_line(struct reader *r, char *text)
 {
     double value[BRC_NUMBERS_MAX_WIDTH + 1];
     struct brc_numbers *t = r->out;
-    if (strlen(text) == LINE_SIZE - 1)
+    if (strlen(text) > LINE_SIZE)
         return fail_at(r, "the line is too long");
     text[strcspn(text, "#")] = '\0';
     int n = split(text, value, r->high);
@@ -76,24 +76,27 @@ int brc_numbers_read(struct brc_context *ctx, const char *key, const char *path,
                      int low, int high, struct brc_numbers *out)
 {
     struct reader r = {ctx, key, path, form, low, high, 0, out, 0, 0};
-    char text[LINE_SIZE];
-    int code = 0;
+    const struct brc_input in = {.key = key, .path = path, .largest = BRC_INPUT_LARGEST};
+    char *text, *next;
+    size_t size;
     *out = (struct brc_numbers){0};
-    FILE *file = fopen(path, "r");
-    if (!file)
-        BRC_FAIL(ctx, BRC_ERR_IO, "%s: cannot read '%.200s': %s", key, path, strerror(errno));
-    while (code == 0 && fgets(text, sizeof text, file)) {
+    BRC_TRY(brc_input_read(ctx, &in, &text, &size));
+    int code = strlen(text) == size
+                   ? 0
+                   : brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                                   "%s: '%s' is not a text file: it holds a byte 0", key, path);
+    for (char *line = text; code == 0 && *line; line = next) {
+        next = line + strcspn(line, "\n");
+        if (*next)
+            *next++ = '\0';
         r.line++;
-        code = take_line(&r, text);
+        code = take_line(&r, line);
     }
-    if (code == 0 && ferror(file))
-        code = brc_error_set(ctx, BRC_ERR_IO, __FILE__, __LINE__, "%s: cannot read '%.200s': %s",
-                             key, path, strerror(errno));
     if (code == 0 && out->n == 0)
         code =
             brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
                           "%s: '%.200s' holds no row; expected one '%s' a line", key, path, form);
-    fclose(file);
+    free(text);
     if (code != 0)
         brc_numbers_free(out);
     return code;

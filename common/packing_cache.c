@@ -2,6 +2,7 @@
 #include "packing_cache.h"
 
 #include "fields.h"
+#include "input_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -92,8 +93,10 @@ bool brc_packing_cache_load(struct brc_context *ctx, const struct brc_specimen_p
 {
     char path[PATH_SIZE];
     uint64_t key = cache_key(p, domain);
-    FILE *file = p->cache && cache_path(path, key, false) ? fopen(path, "rb") : NULL;
-    if (!file)
+    const struct brc_input in = {.path = path, .largest = BRC_INPUT_LARGEST, .is_plain = true};
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    FILE *file;
+    if (!p->cache || !cache_path(path, key, false) || brc_input_open(&quiet, &in, &file, NULL) != 0)
         return false;
     bool found = read_seeds(file, key, ctx, out);
     fclose(file);

@@ -4,6 +4,7 @@
 #include "run.h"
 
 #include "frames.h"
+#include "input_file.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -75,12 +76,21 @@ bool brc_run_has_file(const char *dir, const char *name)
     return snprintf(path, sizeof path, "%s/%s", dir, name) < PATH_SIZE && lstat(path, &status) == 0;
 }
 
+/* NULL when it is not there, or is not a plain file. */
+static FILE *open_plain(const char *path)
+{
+    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    FILE *file;
+    return brc_input_open(&quiet, &in, &file, NULL) == 0 ? file : NULL;
+}
+
 /* A run's log begins with the program's name; a run that was ended before its first line has left
  * an empty one, which is worth nothing to anyone. */
 static bool read_log(const char *dir, bool *is_empty)
 {
     char path[PATH_SIZE], begin[sizeof "breccia "] = "";
-    FILE *log = snprintf(path, sizeof path, "%s/log", dir) < PATH_SIZE ? fopen(path, "rb") : NULL;
+    FILE *log = snprintf(path, sizeof path, "%s/log", dir) < PATH_SIZE ? open_plain(path) : NULL;
     size_t n = log ? fread(begin, 1, sizeof begin - 1, log) : 0;
     if (log)
         fclose(log);
@@ -182,7 +192,7 @@ int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct 
 /* True when the file holds just this text. */
 static bool holds(const char *path, const char *text)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = open_plain(path);
     size_t n = strlen(text);
     char *found = file ? malloc(n + 1) : NULL;
     bool is_same = found && fread(found, 1, n + 1, file) == n && memcmp(found, text, n) == 0;
@@ -204,7 +214,7 @@ static bool is_in_log(const char *dir, const char *path)
     char *text = NULL;
     size_t size = 0;
     bool is_found = false;
-    FILE *file = fopen(path, "rb");
+    FILE *file = open_plain(path);
     if (!file || getdelim(&text, &size, '\0', file) < 0)
         snprintf(digest, sizeof digest, "no digest");
     else
@@ -212,7 +222,7 @@ static bool is_in_log(const char *dir, const char *path)
     free(text);
     if (file)
         fclose(file);
-    file = snprintf(log, sizeof log, "%s/log", dir) < PATH_SIZE ? fopen(log, "rb") : NULL;
+    file = snprintf(log, sizeof log, "%s/log", dir) < PATH_SIZE ? open_plain(log) : NULL;
     while (file && !is_found && fgets(line, sizeof line, file))
         is_found = strncmp(line, "case.yaml: ", 11) == 0 && strstr(line, digest);
     if (file)

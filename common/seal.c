@@ -2,6 +2,7 @@
 #include "seal.h"
 
 #include "fields.h"
+#include "input_file.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -92,7 +93,7 @@ static bool read_seal(const char text[BRC_SEAL_SIZE], const struct brc_seal_kind
     return true;
 }
 
-static int check_file(struct brc_context *ctx, const char *path, FILE *file,
+static int check_file(struct brc_context *ctx, const char *path, FILE *file, size_t size,
                       const struct brc_seal_kind *kind)
 {
     char text[BRC_SEAL_SIZE], expected[BRC_SEAL_SIZE];
@@ -107,7 +108,9 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file,
                  "%s has the %s format %d, breccia %s reads %d; resume with the version that "
                  "wrote it, or start the run anew with --force",
                  path, kind->name, said.format, BRC_VERSION, kind->format);
-    BRC_TRY(measure(ctx, path, file, &found));
+    found.size = size;
+    if (size == said.size)
+        BRC_TRY(measure(ctx, path, file, &found));
     if (found.size != said.size)
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "%s has %" PRIu64 " bytes, it was saved with %" PRIu64 ": it is cut short or "
@@ -122,10 +125,11 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file,
 
 int brc_seal_check(struct brc_context *ctx, const char *path, const struct brc_seal_kind *kind)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", path, strerror(errno));
-    int code = check_file(ctx, path, file, kind);
+    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
+    FILE *file;
+    size_t size;
+    BRC_TRY(brc_input_open(ctx, &in, &file, &size));
+    int code = check_file(ctx, path, file, size, kind);
     fclose(file);
     return code;
 }
@@ -134,8 +138,11 @@ bool brc_seal_is_there(const char *path, const struct brc_seal_kind *kind)
 {
     char text[MARK_SIZE], mark[MARK_SIZE];
     size_t length = make_mark(kind, mark);
-    FILE *file = fopen(path, "rb");
-    bool is_there = file && fread(text, length, 1, file) == 1 && memcmp(text, mark, length) == 0;
+    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    FILE *file;
+    bool is_there = brc_input_open(&quiet, &in, &file, NULL) == 0 &&
+                    fread(text, length, 1, file) == 1 && memcmp(text, mark, length) == 0;
     if (file)
         fclose(file);
     return is_there;
