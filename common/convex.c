@@ -18,6 +18,9 @@ static const double plane_tolerance = 1e-12, rounding_units = 16;
  * body; then the next one is tried: the last is 1e-12 * 4^7, still far below any detail. */
 static const double next_tolerance = 4;
 enum { MAX_TOLERANCES = 8 };
+/* a body that is farther from the origin than this many of its sizes is worked on near its middle
+ */
+static const double far_sizes = 8;
 /* a body of unknown place is looked for within this many times the planes' largest distance */
 static const double search_width = 1e3;
 
@@ -314,82 +317,97 @@ int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
     return 0;
 }
 
+void brc_planes_shift(struct brc_plane *plane, size_t n, const double by[3])
+{
+    for (size_t i = 0; i < n; i++) {
+        long double d = plane[i].d;
+        for (int k = 0; k < 3; k++)
+            d += (long double)plane[i].n[k] * by[k];
+        plane[i].d = (double)d;
+    }
+}
+
 void brc_convex_shift(struct brc_convex *c, const double by[3])
 {
     for (size_t v = 0; v < c->n_vertices; v++)
         brc_add(c->vertex[v], c->vertex[v], by);
-    for (size_t f = 0; f < c->n_faces; f++) {
-        struct brc_plane *p = &c->plane[f];
-        long double d = p->d;
-        for (int k = 0; k < 3; k++)
-            d += (long double)p->n[k] * by[k];
-        p->d = (double)d;
-    }
+    brc_planes_shift(c->plane, c->n_faces, by);
 }
 
-/* Middle of the body's box, and the largest distance of a vertex from it. */
-static double middle_of(const struct brc_convex *c, double middle[3])
+void brc_convex_origin(const double middle[3], double reach, double origin[3])
 {
-    double low[3], high[3];
-    for (int k = 0; k < 3; k++) {
-        low[k] = high[k] = c->vertex[0][k];
-        for (size_t v = 1; v < c->n_vertices; v++) {
-            low[k] = fmin(low[k], c->vertex[v][k]);
-            high[k] = fmax(high[k], c->vertex[v][k]);
-        }
-        middle[k] = 0.5 * low[k] + 0.5 * high[k];
-    }
-    return brc_convex_reach(c, middle);
+    brc_set(origin, 0, 0, 0);
+    if (!(brc_norm(middle) > far_sizes * reach))
+        return;
+    /* a multiple of a power of two near the size: differences to it are exact */
+    double step = exp2(ceil(log2(reach)));
+    for (int k = 0; k < 3; k++)
+        origin[k] = step * nearbyint(middle[k] / step);
 }
 
-/* Whether two planes differ by less than the tolerance within reach of the origin. */
-static bool is_same_plane(const struct brc_plane *p, const struct brc_plane *q, double reach,
-                          double tolerance)
+/* Middle of the body's box. */
+static void middle_of(const struct brc_convex *c, double middle[3])
+{
+    for (int k = 0; k < 3; k++) {
+        double low = c->vertex[0][k], high = low;
+        for (size_t v = 1; v < c->n_vertices; v++) {
+            low = fmin(low, c->vertex[v][k]);
+            high = fmax(high, c->vertex[v][k]);
+        }
+        middle[k] = 0.5 * low + 0.5 * high;
+    }
+}
+
+/* Whether two planes differ by less than the tolerance within reach of the middle. */
+static bool is_same_plane(const struct brc_plane *p, const struct brc_plane *q,
+                          const double middle[3], double reach, double tolerance)
 {
     double turn[3];
     brc_sub(turn, p->n, q->n);
-    return fabs(p->d - q->d) + reach * brc_norm(turn) <= tolerance;
+    double apart = brc_dot(turn, middle) - (p->d - q->d);
+    return fabs(apart) + reach * brc_norm(turn) <= tolerance;
 }
 
-/* The planes as seen from the middle, without those that come again; returns their number. */
-static size_t local_planes(const struct brc_plane *planes, size_t n, const double middle[3],
-                           double reach, double tolerance, struct brc_plane *out)
+/* Drops planes that come again; returns the number of those that stay. */
+static size_t unique_planes(struct brc_plane *plane, size_t n, const double middle[3], double reach,
+                            double tolerance)
 {
-    struct brc_convex all = {.plane = out, .n_faces = n};
     size_t m = 0;
-    double back[3];
-    brc_scale(back, middle, -1);
-    memcpy(out, planes, n * sizeof *out);
-    brc_convex_shift(&all, back);
     for (size_t i = 0; i < n; i++) {
         bool is_new = true;
         for (size_t k = 0; k < m && is_new; k++)
-            is_new = !is_same_plane(&out[k], &out[i], reach, tolerance);
+            is_new = !is_same_plane(&plane[k], &plane[i], middle, reach, tolerance);
         if (is_new)
-            out[m++] = out[i];
+            plane[m++] = plane[i];
     }
     return m;
 }
 
 int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
-                        const struct brc_plane *planes, size_t n, double tolerance)
+                        const struct brc_plane *planes, size_t n, double digits)
 {
-    const double origin[3] = {0, 0, 0};
-    double far = 0, middle[3];
+    const double zero[3] = {0, 0, 0};
+    double far = 0, middle[3], origin[3], back[3];
     for (size_t i = 0; i < n; i++)
         far = fmax(far, fabs(planes[i].d));
-    BRC_TRY(brc_convex_from_planes(ctx, c, planes, n, origin, search_width * far));
+    BRC_TRY(brc_convex_from_planes(ctx, c, planes, n, zero, search_width * far));
     if (c->n_faces == 0)
         return 0;
-    double reach = middle_of(c, middle);
-    struct brc_plane *local = brc_alloc(ctx, n, sizeof *local);
-    if (!local)
+    middle_of(c, middle);
+    double reach = brc_convex_reach(c, middle), tolerance = digits * (brc_norm(middle) + reach);
+    struct brc_plane *plane = brc_alloc(ctx, n, sizeof *plane);
+    if (!plane)
         return BRC_ERR_MEMORY;
-    n = local_planes(planes, n, middle, reach, tolerance, local);
-    int code = brc_convex_from_planes(ctx, c, local, n, origin, 2 * reach);
-    free(local);
+    brc_convex_origin(middle, reach, origin);
+    brc_scale(back, origin, -1);
+    memcpy(plane, planes, n * sizeof *plane);
+    brc_planes_shift(plane, n, back);
+    brc_sub(middle, middle, origin);
+    n = unique_planes(plane, n, middle, reach, tolerance);
+    int code = brc_convex_from_planes(ctx, c, plane, n, middle, 2 * reach);
+    free(plane);
     if (code == 0)
-        brc_convex_shift(c, middle);
+        brc_convex_shift(c, origin);
     return code;
 }
 

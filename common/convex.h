@@ -43,12 +43,16 @@ int brc_convex_box(struct brc_context *ctx, struct brc_convex *c, const double l
 int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
                            const struct brc_plane *planes, size_t n, const double centre[3],
                            double half_width);
-/* The same for a body of unknown place and size: it is found first, then made about its own centre,
- * so that neither its distance from the origin nor its size costs digits. Planes nearer to each
- * other over the whole body than `tolerance` [m] are one: the first stays. */
+/* The same for a body of unknown place and size: it is found first, then made anew from nearby, so
+ * that neither its distance from the origin nor its size costs digits. Planes that are equal within
+ * the part `digits` of their distances, over the whole body, are one: the first stays. */
 int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
-                        const struct brc_plane *planes, size_t n, double tolerance);
-/* Moves the body and its planes. */
+                        const struct brc_plane *planes, size_t n, double digits);
+/* Where the origin should be moved to for work on a body of this size about `middle`: 0 where it is
+ * near enough, else a place near the middle to which coordinates are moved, and back, exactly. */
+void brc_convex_origin(const double middle[3], double reach, double origin[3]);
+/* Moves planes, or a body with its planes. */
+void brc_planes_shift(struct brc_plane *plane, size_t n, const double by[3]);
 void brc_convex_shift(struct brc_convex *c, const double by[3]);
 /* Keeps the part inside the half-space. Vertices within tolerance of the plane count as on it, so
  * that no face or edge shorter than about tolerance arises. Sets *changed when something was cut.

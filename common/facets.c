@@ -215,7 +215,7 @@ static bool has_reversed_facet(const struct brc_facets *f, size_t cell)
 }
 
 static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
-                       struct brc_convex *c, struct edges *edges)
+                       const double origin[3], struct brc_convex *c, struct edges *edges)
 {
     BRC_TRY(brc_facets_cell(ctx, f, cell, c));
     BRC_TRY(collect_edges(ctx, c, edges));
@@ -231,16 +231,18 @@ static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size
         fault = "has a facet turned inside out";
     else if (!is_convex(f, c, size))
         fault = "is not convex";
+    double seed[3];
+    brc_add(seed, f->seed[cell], origin);
     if (fault)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                  "cell %zu of the seed at (%g, %g, %g) %s (volume %g m3, closure error %g); move "
                  "seeds that nearly coincide or are nearly regular",
-                 cell, f->seed[cell][0], f->seed[cell][1], f->seed[cell][2], fault, f->volume[cell],
-                 closure);
+                 cell, seed[0], seed[1], seed[2], fault, f->volume[cell], closure);
     return 0;
 }
 
-int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume)
+int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
+                      const double origin[3])
 {
     struct brc_convex c;
     struct edges edges = {NULL, 0, 0};
@@ -248,7 +250,7 @@ int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, doubl
     int code = 0;
     brc_convex_init(&c);
     for (size_t i = 0; i < f->n_cells && code == 0; i++)
-        code = verify_cell(ctx, f, i, &c, &edges);
+        code = verify_cell(ctx, f, i, origin, &c, &edges);
     brc_convex_free(&c);
     free(edges.list);
     BRC_TRY(code);
@@ -258,6 +260,20 @@ int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, doubl
                  "the cells' volumes sum to %.3g of the domain's volume too much or too little",
                  quality.volume_error);
     return 0;
+}
+
+static void shift(double (*x)[3], size_t n, const double by[3])
+{
+    for (size_t i = 0; i < n; i++)
+        brc_add(x[i], x[i], by);
+}
+
+void brc_facets_shift(struct brc_facets *f, const double by[3])
+{
+    shift(f->vertex, f->n_vertices, by);
+    shift(f->centroid, f->n_facets, by);
+    shift(f->centre, f->n_cells, by);
+    shift(f->seed, f->n_cells, by);
 }
 
 uint64_t brc_facets_hash(const struct brc_facets *f)

@@ -44,8 +44,11 @@ void brc_facets_check(const struct brc_facets *f, double domain_volume,
                       struct brc_facets_quality *quality);
 /* The check that nothing leaves unseen: every cell is a closed convex body (each edge once in each
  * direction, Euler's formula, volume above zero, closure), and the volumes sum to the domain. An
- * error names the cell. */
-int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume);
+ * error names the cell, and its place with `origin` added. */
+int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
+                      const double origin[3]);
+/* Moves all places. */
+void brc_facets_shift(struct brc_facets *f, const double by[3]);
 /* Sets is_contact and area_dropped for a limit of min_area_ratio times the mean inner area. */
 void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio);
 /* m, twice the area over the perimeter: what a facet is wide where it is narrow. */

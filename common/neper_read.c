@@ -35,11 +35,11 @@ struct tess {
     double (*vertex)[3];
     struct face *face;
     int32_t *loop;
-    double (*centre)[3]; /* of the cells, in the order of the file */
-    size_t *order;       /* cell of the file that comes i-th */
-    double extent;
-    int digits;       /* most significant digits of a vertex's coordinate */
-    double precision; /* of the vertices: the last digit of the largest */
+    double (*centre)[3];      /* of the cells, in the order of the file */
+    size_t *order;            /* cell of the file that comes i-th */
+    double extent, origin[3]; /* places are relative to origin, 0 where the body is near it */
+    int digits;               /* most significant digits of a vertex's coordinate */
+    double precision;         /* of the vertices: the last digit of the largest */
 };
 
 static int fail(const struct tess *t, const char *what)
@@ -267,10 +267,23 @@ static int check_faces(const struct tess *t)
 
 /* ---- geometry ------------------------------------------------------------------------------ */
 
+/* Moves all places to where no digits are lost; middle is that of the body's box. */
+static void come_near(struct tess *t, const double middle[3])
+{
+    brc_convex_origin(middle, t->extent / 2, t->origin);
+    for (size_t i = 0; i < t->n_vertices; i++)
+        brc_sub(t->vertex[i], t->vertex[i], t->origin);
+    for (size_t i = 0; t->seed && i < t->n_cells; i++)
+        brc_sub(t->seed[i], t->seed[i], t->origin);
+}
+
 static void scale(struct tess *t, double metres)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     double largest = 0;
+    for (size_t i = 0; t->seed && i < t->n_cells; i++)
+        for (int k = 0; k < 4; k++)
+            t->seed[i][k] *= metres;
     for (size_t i = 0; i < t->n_vertices; i++) {
         brc_scale(t->vertex[i], t->vertex[i], metres);
         for (int k = 0; k < 3; k++) {
@@ -278,13 +291,12 @@ static void scale(struct tess *t, double metres)
             high[k] = fmax(high[k], t->vertex[i][k]);
         }
     }
-    for (size_t i = 0; t->seed && i < t->n_cells; i++)
-        for (int k = 0; k < 4; k++)
-            t->seed[i][k] *= metres;
     for (int k = 0; k < 3; k++)
         largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])) / metres);
     brc_sub(high, high, low);
     t->extent = brc_norm(high);
+    brc_axpy(low, 0.5, high);
+    come_near(t, low);
     if (largest > 0)
         t->precision = metres * pow(10, floor(log10(largest)) + 1 - t->digits);
 }
@@ -455,7 +467,7 @@ static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, 
     BRC_TRY(brc_complex_finish(t->ctx, c, out));
     if (!has_spheres)
         keep_seeds_inside(t, out);
-    return brc_facets_verify(t->ctx, out, volume);
+    return brc_facets_verify(t->ctx, out, volume, t->origin);
 }
 
 static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_convex *domain,
@@ -478,6 +490,10 @@ static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_
     if (code == 0)
         code = make_facets(t, &c, has_spheres, volume, out);
     brc_complex_free(&c);
+    if (code == 0 && brc_norm(t->origin) > 0) {
+        brc_convex_shift(domain, t->origin);
+        brc_facets_shift(out, t->origin);
+    }
     return code;
 }
 

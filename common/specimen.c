@@ -19,6 +19,9 @@ const struct brc_param_list brc_specimen_param_list =
     BRC_PARAMS(specimen_params, struct brc_specimen_params);
 
 enum { MAX_FILE_PLANES = 1000 };
+/* Files of planes have nine digits or more: what differs by less is one plane. Three components and
+ * a distance, each half a digit off in either of two planes. */
+static const double plane_digits = 4e-9;
 
 /* Sides of the polygon that stands for a circle where the case gives none. A flat side under a
  * platen is loaded over its whole width at once, a circle over a patch that grows with the load:
@@ -73,8 +76,6 @@ static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_pa
                            struct brc_convex *domain)
 {
     struct brc_numbers rows;
-    double reach = 0;
-    const double origin[3] = {0, 0, 0};
     BRC_TRY(brc_numbers_read(ctx, "specimen.planes", p->planes, "nx ny nz d", 4, 4, &rows));
     struct brc_plane *plane = brc_alloc(ctx, rows.n, sizeof *plane);
     int code = plane ? 0 : BRC_ERR_MEMORY;
@@ -86,14 +87,13 @@ static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_pa
         const double *row = rows.value + 4 * i;
         plane[i] = (struct brc_plane){{row[0], row[1], row[2]}, 0, (int32_t)i};
         plane[i].d = row[3] / brc_normalise(plane[i].n, plane[i].n);
-        reach = fmax(reach, fabs(plane[i].d));
         if (!isfinite(plane[i].d))
             code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
                                  "specimen.planes: %s:%d: the normal nx ny nz must not be zero",
                                  p->planes, rows.line[i]);
     }
     if (code == 0)
-        code = brc_convex_from_planes(ctx, domain, plane, rows.n, origin, 1e3 * reach);
+        code = brc_convex_enclosed(ctx, domain, plane, rows.n, plane_digits);
     free(plane);
     brc_numbers_free(&rows);
     if (code == 0 && domain->n_faces == 0)

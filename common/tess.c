@@ -32,31 +32,6 @@ static int check_seeds(struct brc_context *ctx, double (*seed)[3], const double 
     return 0;
 }
 
-/* Names the first seed without a cell and, where known, the seed that takes its place. */
-static int name_missing(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
-                        const int32_t *hider, const uint8_t *is_empty)
-{
-    for (size_t i = 0; i < n; i++) {
-        int32_t j = hider[i];
-        const double *x = seed[i];
-        if (j >= 0 && x[0] == seed[j][0] && x[1] == seed[j][1] && x[2] == seed[j][2])
-            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
-                     "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
-                     x[1], x[2]);
-        if (j >= 0)
-            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
-                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell: sphere %d, radius "
-                     "%g m, takes its place; relax the packing on or use more equal radii",
-                     i, x[0], x[1], x[2], radius ? radius[i] : 0, j, radius ? radius[j] : 0);
-        if (is_empty[i])
-            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
-                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell inside the domain; "
-                     "relax the packing on or use more equal radii",
-                     i, x[0], x[1], x[2], radius ? radius[i] : 0);
-    }
-    return 0;
-}
-
 static int copy_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                       struct brc_facets *out)
 {
@@ -80,18 +55,47 @@ static int clip_and_weld(struct brc_context *ctx, struct brc_complex *c,
     return brc_complex_settle(ctx, c, domain);
 }
 
-/* The input and the work arrays of one call of brc_tess_laguerre. */
+/* The input and the work arrays of one call of brc_tess_laguerre; places are relative to origin. */
 struct work {
     double (*seed)[3];
     const double *radius;
     size_t n;
     const struct brc_convex *domain;
+    double origin[3]; /* 0 where the domain is near */
+    double (*own_seed)[3];
+    struct brc_convex own_domain;
     double volume, centroid[3];
     struct brc_complex complex;
     int32_t *hider;     /* as of brc_cgal_cells */
     uint8_t *is_empty;  /* no cell inside the domain */
     bool is_incomplete; /* some seed has no cell: no other weld length helps */
 };
+
+/* Names the first seed without a cell and, where known, the seed that takes its place. */
+static int name_missing(struct brc_context *ctx, const struct work *w)
+{
+    const double *radius = w->radius;
+    for (size_t i = 0; i < w->n; i++) {
+        int32_t j = w->hider[i];
+        double x[3];
+        brc_add(x, w->seed[i], w->origin);
+        if (j >= 0 && memcmp(w->seed[i], w->seed[j], sizeof x) == 0)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
+                     x[1], x[2]);
+        if (j >= 0)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell: sphere %d, radius "
+                     "%g m, takes its place; relax the packing on or use more equal radii",
+                     i, x[0], x[1], x[2], radius ? radius[i] : 0, j, radius ? radius[j] : 0);
+        if (w->is_empty[i])
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell inside the domain; "
+                     "relax the packing on or use more equal radii",
+                     i, x[0], x[1], x[2], radius ? radius[i] : 0);
+    }
+    return 0;
+}
 
 static int make_cells(struct brc_context *ctx, struct work *w, double weld)
 {
@@ -108,10 +112,10 @@ static int make_facets(struct brc_context *ctx, struct work *w, double weld, str
 {
     BRC_TRY(make_cells(ctx, w, weld));
     if (w->is_incomplete)
-        return name_missing(ctx, w->seed, w->radius, w->n, w->hider, w->is_empty);
+        return name_missing(ctx, w);
     BRC_TRY(copy_seeds(ctx, w->seed, w->radius, w->n, out));
     BRC_TRY(brc_complex_finish(ctx, &w->complex, out));
-    return brc_facets_verify(ctx, out, w->volume);
+    return brc_facets_verify(ctx, out, w->volume, w->origin);
 }
 
 /* Tries the weld lengths in turn; the first failure is the one reported. */
@@ -134,11 +138,39 @@ static int try_facets(struct brc_context *ctx, struct work *w, struct brc_facets
     return code;
 }
 
+/* Moves seeds and domain of a place far from the origin there, where no digits are lost. */
+static int come_near(struct brc_context *ctx, struct work *w)
+{
+    const double zero[3] = {0, 0, 0};
+    double reach = brc_convex_reach(w->domain, w->centroid), back[3];
+    brc_convex_origin(w->centroid, reach, w->origin);
+    if (brc_norm(w->origin) == 0)
+        return 0;
+    brc_scale(back, w->origin, -1);
+    w->own_seed = brc_alloc(ctx, w->n, sizeof *w->own_seed);
+    struct brc_plane *plane = brc_alloc(ctx, w->domain->n_faces, sizeof *plane);
+    int code = w->own_seed && plane ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < w->n; i++)
+        brc_add(w->own_seed[i], w->seed[i], back);
+    if (code == 0) {
+        memcpy(plane, w->domain->plane, w->domain->n_faces * sizeof *plane);
+        brc_planes_shift(plane, w->domain->n_faces, back);
+        code =
+            brc_convex_from_planes(ctx, &w->own_domain, plane, w->domain->n_faces, zero, 4 * reach);
+    }
+    free(plane);
+    w->seed = w->own_seed;
+    w->domain = &w->own_domain;
+    return code;
+}
+
 static int prepare(struct brc_context *ctx, struct work *w)
 {
     double inertia[3][3];
     brc_convex_mass(w->domain, &w->volume, w->centroid, inertia);
     BRC_TRY(check_seeds(ctx, w->seed, w->radius, w->n, w->domain));
+    BRC_TRY(come_near(ctx, w));
+    brc_convex_mass(w->domain, &w->volume, w->centroid, inertia);
     w->hider = brc_alloc(ctx, w->n, sizeof *w->hider);
     w->is_empty = brc_alloc(ctx, w->n, sizeof *w->is_empty);
     return w->hider && w->is_empty ? 0 : BRC_ERR_MEMORY;
@@ -159,7 +191,11 @@ int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *
         code = try_facets(ctx, &w, out);
     if (code == 0 && !hidden)
         brc_facets_mark_contacts(out, min_area_ratio);
+    if (code == 0 && !hidden && w.own_seed)
+        brc_facets_shift(out, w.origin);
     brc_complex_free(&w.complex);
+    brc_convex_free(&w.own_domain);
+    free(w.own_seed);
     free(w.hider);
     free(w.is_empty);
     if (code != 0)

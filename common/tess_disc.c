@@ -136,7 +136,8 @@ static int make_disc(struct brc_context *ctx, struct disc *d, double max_area,
         brc_copy(out->seed[i], d->centre[d->order[i]]);
     BRC_TRY(brc_complex_finish(ctx, &d->complex, out));
     double area = d->n_sides * d->radius * d->radius * sin(2 * BRC_PI / d->n_sides) / 2;
-    return brc_facets_verify(ctx, out, area * d->thickness);
+    const double zero[3] = {0, 0, 0};
+    return brc_facets_verify(ctx, out, area * d->thickness, zero);
 }
 
 int brc_tess_disc(struct brc_context *ctx, double radius, double thickness, int n_sides,

@@ -69,20 +69,21 @@ for model in $("$breccia" models | awk '{ print $1 }'); do
 done
 
 # facets in one plane: what erosion takes away is said, whatever else is hard about the cells; fewer
-# digits are as good, as far as they go
-for digits in 12 8 6; do
-    awk -v d=$digits '$1 == "**vertex" { n = 1 } $1 == "**edge" { n = 0 }
-         n && NF == 5 { printf "%s %.*f %.*f %.*f 0\n", $1, d, $2, d, $3, d, $4; next } { print }' \
+# digits are as good, as far as they go, and the place does not matter
+for form in "12 0" "8 0" "6 0" "12 3000"; do
+    read -r digits far <<<"$form"
+    awk -v d="$digits" -v far="$far" '$1 == "**vertex" { n = 1 } $1 == "**edge" { n = 0 }
+         n && NF == 5 { printf "%s %.*f %.*f %.*f 0\n", $1, d, $2 + far, d, $3 - far, d, $4 + far; next } { print }' \
         "$lamellae" >lamellae.tess
     case_file lamellae 'shape: polyhedron, grains: tess, tess: lamellae.tess, tess_unit: 1 cm'
     "$breccia" run lamellae.yaml --model polyhedra --set polyhedra.radius=0.01mm -o lamellae --force --quiet \
         2>said.txt
     [ $? -eq 3 ] && [ "$(wc -l <said.txt)" -eq 1 ] && grep -q 'erodes grain .* away; all grains keep' said.txt ||
-        fail "$digits digits, too large a radius: $(cat said.txt)"
+        fail "$digits digits at $far, too large a radius: $(cat said.txt)"
     for model in "polyhedra --set polyhedra.radius=0.002mm" "vgcm --set vgcm.softening=none --set vgcm.oblique=keep"; do
         # shellcheck disable=SC2086
         "$breccia" run lamellae.yaml --model $model --set run.max_steps=2 -o lamellae --force --quiet \
-            >said.txt 2>&1 || fail "$digits digits, $model: $(cat said.txt)"
+            >said.txt 2>&1 || fail "$digits digits at $far, $model: $(cat said.txt)"
     done
 done
 

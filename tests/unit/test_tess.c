@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+static const double zero[3] = {0, 0, 0};
 static struct brc_context ctx = BRC_CONTEXT_INIT;
 
 /* One test pack: a cube of m^3 cells of edge 1 cm, seeds jittered by a part of the cell. */
@@ -351,17 +352,19 @@ static void test_cell_and_damage(void **state)
         CHECK_NEAR(volume, p.facets.volume[i], 0, 1e-12);
         CHECK_NEAR_ARRAY(centroid, p.facets.centre[i], 3, 1e-14, 0);
     }
-    CHECK_OK(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume));
+    CHECK_OK(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume, zero));
     double kept = p.facets.vertex[40][0];
     p.facets.vertex[40][0] += 1e-3;
-    CHECK_FAILS(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume), BRC_ERR_GEOMETRY, "cell ");
+    CHECK_FAILS(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume, zero), BRC_ERR_GEOMETRY,
+                "cell ");
     p.facets.vertex[40][0] = kept;
     int32_t swapped = p.facets.loop[3];
     p.facets.loop[3] = p.facets.loop[4];
-    CHECK_FAILS(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume), BRC_ERR_GEOMETRY, "closed");
+    CHECK_FAILS(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume, zero), BRC_ERR_GEOMETRY,
+                "closed");
     p.facets.loop[3] = swapped;
-    CHECK_FAILS(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume * (1 + 1e-11)), BRC_ERR_GEOMETRY,
-                "volume");
+    CHECK_FAILS(&ctx, brc_facets_verify(&ctx, &p.facets, p.volume * (1 + 1e-11), zero),
+                BRC_ERR_GEOMETRY, "volume");
     brc_convex_free(&c);
     free_pack(&p);
 }
