@@ -59,18 +59,20 @@ bool brc_progress_is_due(const struct brc_progress *p)
     return brc_progress_clock() - p->last_drawn >= (often ? interval_terminal : interval_plain);
 }
 
-/* Speed of the fraction, smoothed over the last seconds: the loading rate adapts, so that the mean
- * since the start says little. */
+/* Steps a second, smoothed over the last seconds: a step costs more or less as contacts open. */
 static void take_report(struct brc_progress_run *run, const struct brc_progress_report *report)
 {
     double now = brc_progress_clock(), dt = now - run->time_before;
     run->report = *report;
-    if (dt < 0.05 && !report->is_done)
+    if (run->has_begun && dt < 0.05)
         return;
-    double speed = dt > 0 ? (report->fraction - run->fraction_before) / dt : 0;
-    double weight = run->speed > 0 ? 1 - exp(-dt / smoothing_time) : 1;
-    run->speed += weight * (speed - run->speed);
-    run->fraction_before = report->fraction;
+    if (run->has_begun) {
+        double speed = (double)(report->step - run->step_before) / dt;
+        double weight = run->speed > 0 ? 1 - exp(-dt / smoothing_time) : 1;
+        run->speed += weight * (speed - run->speed);
+    }
+    run->has_begun = true;
+    run->step_before = report->step;
     run->time_before = now;
 }
 
@@ -78,7 +80,7 @@ static void take_report(struct brc_progress_run *run, const struct brc_progress_
 static const char *time_left(const struct brc_progress_run *run, char *buffer, size_t size)
 {
     char duration[32];
-    double left = run->speed > 0 ? (1 - run->report.fraction) / run->speed : HUGE_VAL;
+    double left = run->speed > 0 ? run->report.steps_left / run->speed : NAN;
     if (run->report.is_done)
         snprintf(buffer, size, "done");
     else if (left < 360000)
@@ -87,6 +89,15 @@ static const char *time_left(const struct brc_progress_run *run, char *buffer, s
     else
         snprintf(buffer, size, "time left unknown");
     return buffer;
+}
+
+/* Part of all steps, the most that may be left included. */
+static double part_done(const struct brc_progress_report *r)
+{
+    double all = (double)r->step + r->steps_left;
+    if (r->is_done)
+        return 1;
+    return all > 0 ? (double)r->step / all : 0; /* 0 where it is not known */
 }
 
 static void draw_bar(FILE *out, double fraction)
@@ -105,7 +116,7 @@ static void draw_run(const struct brc_progress *p, const struct brc_progress_run
     brc_progress_duration(brc_progress_clock() - p->started, elapsed, sizeof elapsed);
     fprintf(p->out, "%-*s ", LABEL_WIDTH, run->label);
     if (p->is_terminal)
-        draw_bar(p->out, r->fraction);
+        draw_bar(p->out, part_done(r));
     fprintf(p->out,
             " step %7" PRId64 "  strain %.4f %%  stress %8.3f MPa  broken %6" PRId64 "  %s  %s",
             r->step, 100 * r->strain, 1e-6 * r->stress, r->broken, elapsed,

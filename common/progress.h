@@ -11,9 +11,9 @@
 
 /* What a run says about itself; plain data. */
 struct brc_progress_report {
-    double fraction; /* of the longest that the run may take, 0 to 1 */
-    double strain;   /* platen strain */
-    double stress;   /* Pa */
+    double steps_left; /* at most; NAN: not known yet */
+    double strain;     /* platen strain */
+    double stress;     /* Pa */
     int64_t step, broken;
     bool is_done;
 };
@@ -29,8 +29,9 @@ struct brc_progress {
     struct brc_progress_run {
         char label[64];
         struct brc_progress_report report;
-        double fraction_before, time_before, speed; /* of the fraction, smoothed, 1/s */
-        bool has_ended;
+        int64_t step_before;
+        double time_before, speed; /* steps a second, smoothed; 0: not known yet */
+        bool has_begun, has_ended;
     } run[BRC_PROGRESS_MAX_RUNS];
 };
 

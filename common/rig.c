@@ -388,6 +388,21 @@ bool brc_rig_done(const struct brc_sim *sim)
            rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
 }
 
+double brc_rig_steps_left(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    double left = fmax(rig->params.strain_max - rig->strain, 0), rate = rig->rate;
+    if (rig->n_platens == 0)
+        return HUGE_VAL;
+    if (rig->params.loading == BRC_LOADING_ADAPTIVE) {
+        if (rig->strain_onset == 0)
+            return HUGE_VAL;
+        rate = rig->params.target / sim->dt * rig->strain_onset;
+        rate = fmin(fmax(rate, rig->params.rate_min), rig->params.rate_max);
+    }
+    return left / (rate * sim->dt);
+}
+
 double brc_rig_unbalanced_max(const struct brc_sim *sim)
 {
     const struct brc_curve *c = &sim->rig.curve;

@@ -97,6 +97,10 @@ int brc_rig_sample(struct brc_sim *sim);
 /* The test has reached its end: strain_max, or the load has fallen to stop_drop of its
  * peak. */
 bool brc_rig_done(const struct brc_sim *sim);
+/* Steps until strain_max at the rate of the loading's present stage, for "time left, at most":
+ * HUGE_VAL while adaptive loading has not met damage, as all hangs on where it begins, and without
+ * platens. It falls from then on; brakes for avalanches are left out. */
+double brc_rig_steps_left(const struct brc_sim *sim);
 /* The values measured so far; returns how many. docs/measures.md says how. */
 int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS]);
 /* Largest unbalanced ratio of the rows up to the peak that carry a tenth of it or more. */

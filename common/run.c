@@ -240,9 +240,9 @@ static size_t count_active(const struct brc_contacts *c)
 static void report(struct run *r, bool is_done)
 {
     const struct brc_rig *rig = &r->sim.rig;
-    double by_strain = rig->strain / rig->params.strain_max;
-    double by_steps = (double)r->sim.step / r->sim.run.max_steps;
-    struct brc_progress_report now = {.fraction = fmin(fmax(by_strain, by_steps), 1),
+    double most = (double)(r->sim.run.max_steps - r->sim.step);
+    double by_rate = rig->n_platens > 0 ? brc_rig_steps_left(&r->sim) : most;
+    struct brc_progress_report now = {.steps_left = isfinite(by_rate) ? fmin(by_rate, most) : NAN,
                                       .strain = rig->strain,
                                       .stress = rig->force / rig->section,
                                       .step = r->sim.step,

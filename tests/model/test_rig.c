@@ -73,6 +73,33 @@ static void the_rate_follows_the_onset_of_damage(void **state)
     assert_true(let_go > 2);
 }
 
+/* Steps that are left, at most: not known before damage begins, then a bound that falls. */
+static void what_is_left_falls(void **state)
+{
+    struct fixture *f = *state;
+    const struct brc_rig *rig = &f->sim.rig;
+    double first = 0, before = HUGE_VAL;
+    int64_t at = 0;
+    pull(f, "target: 0.004; strain_max: 0.005; stop_drop: 0", 0);
+    for (; !brc_rig_done(&f->sim); fixture_steps(f, 1)) {
+        double left = brc_rig_steps_left(&f->sim);
+        assert_true((left < HUGE_VAL) == (rig->strain_onset > 0));
+        if (left == HUGE_VAL)
+            continue;
+        if (first == 0) {
+            first = left;
+            at = f->sim.step;
+        }
+        assert_true(left <= before);
+        before = left;
+    }
+    print_message("at most %.0f steps left at step %lld of %lld\n", first, (long long)at,
+                  (long long)f->sim.step);
+    CHECK_BETWEEN(first / (double)(f->sim.step - at), 1, 10);
+    pull(f, "loading: fixed; rate: 1e-6 1/s; strain_max: 0.005", 200);
+    CHECK_NEAR(brc_rig_steps_left(&f->sim), 4800, 1e-6, 0);
+}
+
 /* An onset that was none is forgotten, and a finer target takes steps in proportion. */
 static void a_false_alarm_costs_little(void **state)
 {
@@ -236,6 +263,7 @@ int main(void)
         FIXTURE_TEST(a_fixed_rate_stays),
         FIXTURE_TEST(adaptive_rates_keep_to_their_bounds),
         FIXTURE_TEST(the_rate_follows_the_onset_of_damage),
+        FIXTURE_TEST(what_is_left_falls),
         FIXTURE_TEST(a_false_alarm_costs_little),
         FIXTURE_TEST(a_rising_rate_drives_no_avalanche),
         FIXTURE_TEST(a_change_of_rate_makes_no_wave),

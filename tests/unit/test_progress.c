@@ -18,12 +18,8 @@ static void test_duration(void **state)
 static size_t drawn(bool quiet, char *text, size_t size)
 {
     static const char *const labels[] = {"one", "two"};
-    const struct brc_progress_report report = {.fraction = 1,
-                                               .strain = 0.0123,
-                                               .stress = 4.5e6,
-                                               .step = 678,
-                                               .broken = 9,
-                                               .is_done = true};
+    const struct brc_progress_report report = {
+        .strain = 0.0123, .stress = 4.5e6, .step = 678, .broken = 9, .is_done = true};
     struct brc_progress p;
     FILE *out = tmpfile();
     assert_non_null(out);
@@ -73,13 +69,43 @@ static void test_pipe(void **state)
     close(ends[1]);
 }
 
+/* What stands at the end of the line after some steps, at a pace of a thousand steps in a tenth of
+ * a second. */
+static void line_after(double steps_left, char *text, size_t size)
+{
+    static const char *const labels[] = {"one"};
+    struct brc_progress_report report = {.step = 5000, .steps_left = steps_left};
+    struct brc_progress p;
+    FILE *out = tmpfile();
+    assert_non_null(out);
+    brc_progress_begin(&p, out, labels, 1, false);
+    brc_progress_update(&p, 0, &report); /* a resumed run: these steps were made before */
+    p.run[0].time_before -= 0.1;
+    report.step += 1000;
+    brc_progress_update(&p, 0, &report);
+    brc_progress_end(&p);
+    rewind(out);
+    text[fread(text, 1, size - 1, out)] = '\0';
+    fclose(out);
+}
+
+/* The bound is steps times time a step, not what max_steps or a slow start would allow. */
+static void test_time_left(void **state)
+{
+    (void)state;
+    char text[2000];
+    line_after(1.2e6, text, sizeof text);
+    assert_non_null(strstr(text, "at most 2:0"));
+    line_after(NAN, text, sizeof text);
+    assert_non_null(strstr(text, "time left unknown"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_duration),
-        cmocka_unit_test(test_plain_lines),
-        cmocka_unit_test(test_quiet),
-        cmocka_unit_test(test_pipe),
+        cmocka_unit_test(test_duration),  cmocka_unit_test(test_plain_lines),
+        cmocka_unit_test(test_quiet),     cmocka_unit_test(test_pipe),
+        cmocka_unit_test(test_time_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
