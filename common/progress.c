@@ -11,7 +11,7 @@
 enum { BAR_WIDTH = 24, LABEL_WIDTH = 12 };
 
 static const double interval_terminal = 0.2, interval_plain = 5; /* s */
-static const double smoothing_time = 8;                          /* s, of the speed */
+static const double smoothing_time = 30;                         /* s, of the speed */
 
 double brc_progress_clock(void)
 {
