@@ -206,9 +206,12 @@ static char *add_section(struct brc_context *ctx, char *text, const char *sectio
 char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
                    const struct brc_model *model)
 {
+    /* an automatic rate as a number: it hangs on strain_max, which may change when a run goes on */
+    struct brc_test_params test = job->test;
+    test.rate = brc_rig_start_rate(&test);
     char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &job->specimen);
     if (text)
-        text = add_section(ctx, text, "test", brc_test_param_list, &job->test);
+        text = add_section(ctx, text, "test", brc_test_param_list, &test);
     if (text)
         text = add_section(ctx, text, "run", brc_run_param_list, &job->run);
     if (text)
@@ -233,11 +236,15 @@ int brc_job_same(struct brc_context *ctx, const char *saved, const char *now)
     while (*saved && *now) {
         size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
         bool equal = a == b && strncmp(saved, now, a) == 0;
-        if (!equal && !(may_change(saved, strcspn(saved, " ")) && may_change(now, key)))
+        bool is_allowed = may_change(saved, strcspn(saved, " ")) && may_change(now, key);
+        if (!equal && !is_allowed)
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "the saved state was made with '%.*s', the case says '%.*s'; resume with "
-                     "unchanged parameters (--set included) or start anew with --force",
-                     (int)a, saved, (int)b, now);
+                     "unchanged parameters (--set included%s) or start anew with --force",
+                     (int)a, saved, (int)b, now,
+                     strncmp(now, "test.rate ", 10) == 0
+                         ? "; an automatic rate follows test.strain_max: give the first one"
+                         : "");
         saved += a + (saved[a] != '\0');
         now += b + (now[b] != '\0');
     }

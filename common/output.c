@@ -101,7 +101,7 @@ static void json_results(FILE *out, const struct brc_summary *s)
 static void json_frames(FILE *out, const struct brc_summary *s)
 {
     fprintf(out, "  \"n_frames\": %zu,\n", s->n_frames);
-    if (s->n_frames == 0)
+    if (s->n_frames == 0 || !s->frame[0].name) /* a run that goes on may have written none yet */
         return;
     fputs("  \"last_frame\": {", out);
     for (int k = 0; k < BRC_N_FRAME_KINDS; k++)

@@ -90,14 +90,19 @@ void brc_rig_start_curve(struct brc_sim *sim)
     brc_table_init(&sim->rig.curve.table, "curve", set, &sim->rig.curve);
 }
 
+double brc_rig_start_rate(const struct brc_test_params *test)
+{
+    bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE;
+    if (test->rate > 0 || brc_rig_platens(test) == 0)
+        return test->rate;
+    return test->strain_max * (is_adaptive ? FIRST_PART * test->target : FIXED_PART);
+}
+
 int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
 {
     struct brc_rig *rig = &sim->rig;
     rig->params = *test;
-    bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE;
-    if (test->rate == 0)
-        rig->params.rate =
-            test->strain_max * (is_adaptive ? FIRST_PART * test->target : FIXED_PART);
+    rig->params.rate = brc_rig_start_rate(test);
     rig->n_platens = brc_rig_platens(test);
     rig->axis = test->kind == BRC_TEST_BRAZILIAN ? 1 : 2;
     rig->sense = test->kind == BRC_TEST_TENSION ? -1 : 1;

@@ -82,6 +82,8 @@ enum { BRC_MAX_RESULTS = 24 };
 void brc_rig_start_curve(struct brc_sim *sim);
 /* Number of platens of a test. */
 int brc_rig_platens(const struct brc_test_params *test);
+/* The rate at which a test starts [1/s]: its own, or the automatic one. */
+double brc_rig_start_rate(const struct brc_test_params *test);
 /* Places the platen bodies at the specimen's ends and gives them and the grains the
  * velocity field of a uniform strain at the starting rate. Called once, when bodies have
  * their places. */

@@ -22,10 +22,11 @@
 enum { PATH_SIZE = 4096, DESCRIPTION_SIZE = 4096 };
 
 /* What a run counts beside its state; goes on when it is resumed. */
-#define RUN_COUNTS(SCALAR, VECTOR)                                           \
-    SCALAR(double, cpu_s, BRC_STATE, "s", "processor time of the step loop") \
-    SCALAR(double, wall_s, BRC_STATE, "s", "elapsed time of the step loop")  \
-    SCALAR(double, contact_steps, BRC_STATE, "1", "contacts with a spring, summed over steps")
+#define RUN_COUNTS(SCALAR, VECTOR)                                                             \
+    SCALAR(double, cpu_s, BRC_STATE, "s", "processor time of the step loop")                   \
+    SCALAR(double, wall_s, BRC_STATE, "s", "elapsed time of the step loop")                    \
+    SCALAR(double, contact_steps, BRC_STATE, "1", "contacts with a spring, summed over steps") \
+    SCALAR(int64_t, n_active, BRC_STATE, "1", "contacts with a spring at the last count")
 
 #define COUNT_MEMBER(type, name, flags, unit, meaning) type name;
 #define NO_VECTOR(type, name, n, flags, unit, meaning)
@@ -44,7 +45,6 @@ struct run {
     struct brc_frames frames;
     char *case_text, *parameters, seed[16]; /* for the files */
     FILE *log;
-    size_t n_active; /* contacts with a spring at the last count */
     double cpu_before, wall_before;
     double saved_at; /* s, wall clock at the last save */
     const char *ended_by;
@@ -286,13 +286,13 @@ static int step_loop(struct run *r)
     r->cpu_before = cpu_now();
     r->wall_before = r->saved_at = brc_progress_clock();
     while (!(r->ended_by = ended_by(sim))) {
-        if (r->n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
-            r->n_active = count_active(&sim->pairs) + count_active(&sim->platens);
+        if (r->counts.n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
+            r->counts.n_active = (int64_t)(count_active(&sim->pairs) + count_active(&sim->platens));
         if (brc_frames_is_due(&r->frames, output, sim))
             BRC_TRY(write_frame(r));
         BRC_TRY(brc_sim_step(sim));
         BRC_TRY(brc_blowup_energy(sim));
-        r->counts.contact_steps += (double)r->n_active;
+        r->counts.contact_steps += (double)r->counts.n_active;
         if (brc_progress_is_due(r->order->progress))
             report(r, false);
         if (save_is_due(r))

@@ -88,6 +88,36 @@ expect 0 "ended by run.max_steps" "$breccia" run case.yaml -o parts --set run.ma
 expect 0 "results in parts" "$breccia" run case.yaml -o parts --resume
 [ "$hash" = "$(grep state_hash parts/summary.json)" ] ||
     { echo "FAILED: a resumed run has other bits"; failures=$((failures + 1)); }
+# in each number but for times
+counts() {
+    grep -v '"cpu_s"\|"wall_s"\|"ns_per_contact_step"\|"case"' "$1/summary.json"
+}
+for model_name in $("$breccia" models | awk '{ print $1 }'); do
+    # bonds break, and the parts end between two samples, in which contacts are counted
+    bits="case.yaml --model $model_name --set output.frames=3 --set output.plots=off --quiet"
+    bits="$bits --set test.kind=tension --set test.rate=1e-4s-1 --set test.strain_max=0.03"
+    bits="$bits --set test.stop_drop=0 --set test.sample_steps=200"
+    expect 0 "" "$breccia" run $bits -o "whole_$model_name"
+    expect 0 "" "$breccia" run $bits -o "three_$model_name" --set run.max_steps=190
+    expect 0 "" "$breccia" run $bits -o "three_$model_name" --set run.max_steps=290 --resume
+    expect 0 "" "$breccia" run $bits -o "three_$model_name" --resume
+    [ "$(counts "whole_$model_name")" = "$(counts "three_$model_name")" ] ||
+        { echo "FAILED: the summary of a resumed run differs"; failures=$((failures + 1))
+          diff "whole_$model_name/summary.json" "three_$model_name/summary.json"; }
+done
+
+# an automatic rate hangs on strain_max: with another one, the run would not be that of one part
+auto="case.yaml --set test.rate=0s-1 --set test.loading=adaptive --quiet"
+expect 0 "" "$breccia" run $auto -o auto --set test.strain_max=2e-4
+expect 3 "an automatic rate follows test.strain_max" \
+    "$breccia" run $auto -o auto --set test.strain_max=4e-4 --resume
+rate=$(printf '%s\n' "$said" | sed -n "s/.*made with 'test.rate = \([^ ]*\) 1\/s'.*/\1/p")
+given="$auto --set test.rate=${rate}s-1 --set test.strain_max=4e-4"
+expect 0 "" "$breccia" run $given -o auto --resume
+expect 0 "" "$breccia" run $given -o auto_whole
+[ "$(counts auto)" = "$(counts auto_whole)" ] ||
+    { echo "FAILED: a run with a new limit is not that of one part"; failures=$((failures + 1)); }
+
 slow="--set test.rate=1e-8s-1"
 "$breccia" run case.yaml $slow -o stopped --quiet >stopped.txt 2>&1 &
 for try in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
