@@ -18,7 +18,7 @@
            "pictures: from the side, or along z; auto: by the test")                        \
     INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")                          \
     INT(frames, "0", "[0, 99999]",                                                          \
-        "frames for ParaView: this many over test.strain_max, beside the first; 0: none")   \
+        "frames for ParaView: this many beside the first, by what happens; 0: none")        \
     REAL(frame_strain, "1", "0", "[0, 10)",                                                 \
          "frames for ParaView: one every so much platen strain; 0: by frames")              \
     INT(frame_steps, "0", "[0, 2000000000]",                                                \

@@ -183,8 +183,10 @@ static int save(struct run *r)
     struct extra extra;
     take_times(r);
     make_extra(r, &extra);
+    BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->order->dir, &extra.h5));
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
+    BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->order->dir));
     /* limits of a run that goes on may have changed: so does the case, with the state */
     BRC_TRY(brc_run_keep_case(r->ctx, r->order->dir, r->order->job, r->case_text, false));
     r->saved_at = brc_progress_clock();
@@ -217,10 +219,21 @@ static int load(struct run *r)
     int code = brc_job_same(r->ctx, saved, r->parameters);
     free(saved);
     BRC_TRY(code);
-    return brc_h5_load(r->ctx, path, &r->sim, &extra.h5);
+    BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra.h5));
+    return brc_frames_sweep(r->ctx, &r->frames, r->order->dir);
 }
 
-static int write_frame(struct run *r)
+static int take_frames(struct run *r)
+{
+    const struct brc_output_params *output = &r->order->job->output;
+    struct extra extra;
+    if (!brc_frames_are_on(output))
+        return 0;
+    make_extra(r, &extra);
+    return brc_frames_take(r->ctx, &r->frames, r->order->dir, output, &r->sim, &extra.h5);
+}
+
+static int write_last_frame(struct run *r)
 {
     struct extra extra;
     make_extra(r, &extra);
@@ -276,20 +289,18 @@ static int end_loop(struct run *r)
 {
     BRC_TRY(save(r));
     bool has_last = brc_frames_are_on(&r->order->job->output) && strcmp(r->ended_by, "signal") != 0;
-    return has_last ? write_frame(r) : 0;
+    return has_last ? write_last_frame(r) : 0;
 }
 
 static int step_loop(struct run *r)
 {
     struct brc_sim *sim = &r->sim;
-    const struct brc_output_params *output = &r->order->job->output;
     r->cpu_before = cpu_now();
     r->wall_before = r->saved_at = brc_progress_clock();
     while (!(r->ended_by = ended_by(sim))) {
         if (r->counts.n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
             r->counts.n_active = (int64_t)(count_active(&sim->pairs) + count_active(&sim->platens));
-        if (brc_frames_is_due(&r->frames, output, sim))
-            BRC_TRY(write_frame(r));
+        BRC_TRY(take_frames(r));
         BRC_TRY(brc_sim_step(sim));
         BRC_TRY(brc_blowup_energy(sim));
         r->counts.contact_steps += (double)r->counts.n_active;

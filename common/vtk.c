@@ -4,6 +4,7 @@
 #include "h5.h"
 #include "output.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,18 +102,25 @@ int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mes
     return brc_h5_finish(&f, code);
 }
 
-int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix,
-                   const double *time, size_t n)
+void brc_vtk_name(char *name, size_t size, const char *prefix, int64_t step)
 {
-    char *text = NULL;
+    snprintf(name, size, "%s_%05" PRId64 ".hdf", prefix, step);
+}
+
+int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix,
+                   const int64_t *step, const double *time, size_t n)
+{
+    char *text = NULL, name[64];
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out)
         BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for %s", path);
     fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
-    for (size_t i = 0; i < n; i++)
-        fprintf(out, "    {\"name\": \"%s_%05zu.hdf\", \"time\": %.17g}%s\n", prefix, i, time[i],
+    for (size_t i = 0; i < n; i++) {
+        brc_vtk_name(name, sizeof name, prefix, step[i]);
+        fprintf(out, "    {\"name\": \"%s\", \"time\": %.17g}%s\n", name, time[i],
                 i + 1 < n ? "," : "");
+    }
     fputs("  ]\n}\n", out);
     bool is_good = fclose(out) == 0;
     int code = is_good ? brc_output_text(ctx, path, text)

@@ -2,9 +2,12 @@
 /* Frames: what the meshes hold against the state they are made of, and when one is due. */
 #include "common/frame_mesh.h"
 #include "common/frames.h"
+#include "common/vtk.h"
 #include "tests/fixture.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static const char specimen[] = "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
                                "jitter: 0.6; seed: 3";
@@ -98,47 +101,121 @@ static void test_meshes(void **state)
     }
 }
 
-/* Steps at which a frame is due, when each that is due is taken. */
-static int taken(struct fixture *f, const char *settings, int n_steps, int64_t *steps)
+static char folder[] = "/tmp/breccia-test-XXXXXX";
+static const struct brc_h5_extra nothing = {NULL, 0, NULL, 0};
+
+/* A run with frames as run.c makes it, to its end or for n steps; its steps with a frame. save_at:
+ * the step at which the frames are saved, as with a state. */
+static size_t run(struct fixture *f, const char *settings, int64_t n, int64_t save_at,
+                  struct brc_frames *frames)
 {
     struct brc_output_params p;
-    struct brc_frames frames;
-    int n = 0;
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_output_param_list, &p));
     fixture_set(f, brc_output_param_list, &p, settings);
-    fixture_sim(f, &brc_model_null, "",
-                "kind: compression; loading: fixed; rate: 1e-3 1/s; strain_max: 0.05", "");
-    brc_frames_init(&frames);
-    for (int i = 0; i <= n_steps; i++) {
-        if (brc_frames_is_due(&frames, &p, &f->sim)) {
-            CHECK_OK(&f->ctx, brc_table_resize(&f->ctx, &frames.table, (size_t)n + 1));
-            frames.step[n] = f->sim.step;
-            frames.strain[n] = f->sim.rig.strain;
-            steps[n++] = f->sim.step;
-        }
+    brc_frames_init(frames);
+    while (f->sim.step < n && !brc_rig_done(&f->sim)) {
+        CHECK_OK(&f->ctx, brc_frames_take(&f->ctx, frames, folder, &p, &f->sim, &nothing));
         fixture_steps(f, 1);
+        if (f->sim.step == save_at) {
+            CHECK_OK(&f->ctx, brc_frames_flush(&f->ctx, frames, folder, &nothing));
+            CHECK_OK(&f->ctx, brc_frames_sweep(&f->ctx, frames, folder));
+        }
     }
-    brc_frames_free(&frames);
-    return n;
+    CHECK_OK(&f->ctx, brc_frames_flush(&f->ctx, frames, folder, &nothing));
+    CHECK_OK(&f->ctx, brc_frames_sweep(&f->ctx, frames, folder));
+    if (brc_frames_are_on(&p))
+        CHECK_OK(&f->ctx, brc_frames_write(&f->ctx, frames, folder, &f->sim, &nothing));
+    return frames->table.n;
 }
 
-static void test_schedule(void **state)
+static bool is_there(const char *kind, int64_t step)
+{
+    char name[64], path[128];
+    brc_vtk_name(name, sizeof name, kind, step);
+    snprintf(path, sizeof path, "%s/frames/%s", folder, name);
+    return access(path, R_OK) == 0;
+}
+
+static void forget(struct fixture *f, struct brc_frames *frames)
+{
+    brc_frames_free(frames);
+    CHECK_OK(&f->ctx, brc_frames_remove(&f->ctx, folder));
+}
+
+/* Frames by steps or strain, and at the end; without a load there is no peak. */
+static void test_intervals(void **state)
 {
     struct fixture *f = *state;
-    int64_t steps[64];
+    struct brc_frames frames;
+    static const struct {
+        const char *settings;
+        int64_t step[9]; /* -1: the end */
+    } cases[] = {{"", {-1}},
+                 {"frame_strain: 0.02", {0, 20, 40, 49, -1}},
+                 {"frames: 5; frame_steps: 14", {0, 14, 28, 42, 49, -1}}};
     fixture_grid(f, 2, 2, 2, 0.01, 0.3);
-    assert_int_equal(taken(f, "", 49, steps), 0);
-    assert_int_equal(taken(f, "frames: 5", 49, steps), 5);
-    for (int i = 0; i < 5; i++)
-        assert_int_equal(steps[i], 10 * i);
-    assert_int_equal(taken(f, "frame_strain: 0.02", 49, steps), 3);
-    assert_int_equal(steps[2], 40);
-    assert_int_equal(taken(f, "frames: 5; frame_steps: 7", 49, steps), 8);
-    assert_int_equal(steps[7], 49);
+    for (int k = 0; k < 3; k++) {
+        size_t n = 0;
+        fixture_sim(f, &brc_model_null, "",
+                    "kind: compression; loading: fixed; rate: 1e-3 1/s; strain_max: 0.05", "");
+        run(f, cases[k].settings, 49, -1, &frames);
+        for (; cases[k].step[n] >= 0; n++)
+            assert_int_equal(frames.step[n], cases[k].step[n]);
+        assert_int_equal(frames.table.n, n);
+        forget(f, &frames);
+    }
+}
+
+/* As many as are asked for, one of them at the peak, evenly by what happens, and each is on disk:
+ * in a test that ends early and suddenly. The simulation does not feel them, nor does saving. */
+static void test_what_happens(void **state)
+{
+    struct fixture *f = *state;
+    struct brc_frames frames, again;
+    fixture_specimen(f, specimen);
+    for (int i = 0; i < brc_registry_count(); i++)
+        for (int asked = 3; asked <= 24; asked = 2 * asked) {
+            const struct brc_model *model = brc_registry_at(i);
+            char settings[32];
+            snprintf(settings, sizeof settings, "frames: %d", asked);
+            fixture_sim(f, model, "", "kind: tension; strain_max: 0.1", "");
+            size_t n = run(f, settings, INT64_MAX, -1, &frames);
+            uint64_t hash = brc_sim_hash(&f->sim);
+            print_message("%s: %d frames asked, %zu\n", model->name, asked, n);
+            CHECK_BETWEEN((double)n, asked, asked + 2);
+            const struct brc_rig *rig = &f->sim.rig;
+            int peaks = 0;
+            for (size_t k = 0; k < n; k++) {
+                assert_true(is_there("grains", frames.step[k]) &&
+                            is_there("contacts", frames.step[k]));
+                peaks += frames.force[k] == rig->force_peak;
+            }
+            assert_int_equal(peaks, 1);
+            assert_true(frames.step[0] == 0 && frames.step[n - 1] == f->sim.step);
+            /* no gap of strain up to the peak is wider than a few frames' share */
+            for (size_t k = 1; k < n && frames.strain[k] <= rig->strain_peak; k++)
+                CHECK_BETWEEN(frames.strain[k] - frames.strain[k - 1], 0,
+                              6 * rig->strain_peak / asked);
+            fixture_sim(f, model, "", "kind: tension; strain_max: 0.1", "");
+            assert_int_equal(run(f, settings, INT64_MAX, frames.step[n / 2] + 1, &again), n);
+            assert_true(brc_sim_hash(&f->sim) == hash);
+            assert_memory_equal(again.step, frames.step, n * sizeof *again.step);
+            fixture_sim(f, model, "", "kind: tension; strain_max: 0.1", "");
+            while (!brc_rig_done(&f->sim))
+                fixture_steps(f, 1);
+            assert_true(brc_sim_hash(&f->sim) == hash);
+            brc_frames_free(&again);
+            forget(f, &frames);
+        }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {FIXTURE_TEST(test_meshes), FIXTURE_TEST(test_schedule)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {FIXTURE_TEST(test_meshes), FIXTURE_TEST(test_intervals),
+                                       FIXTURE_TEST(test_what_happens)};
+    if (!mkdtemp(folder))
+        return 1;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rmdir(folder);
+    return failed;
 }
