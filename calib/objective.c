@@ -84,10 +84,12 @@ static int add_residual(struct brc_context *ctx, const struct calib_objective *o
     const struct calib_quantity *q = &calib_quantities[t->quantity];
     const struct brc_summary_value *measured = brc_output_result(summary, q->result);
     if (!measured || !isfinite(measured->value))
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "calibration: the %s test of %s gave no %s; run its case alone and look at the "
-                 "curve",
-                 test_names[q->test], o->model, q->result);
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "calibration: the %s test of %s gave no %s%s%s; run its case alone and look at the "
+            "curve",
+            test_names[q->test], o->model, q->result, measured && measured->note ? ": " : "",
+            measured && measured->note ? measured->note : "");
     struct calib_residual *r = &out->residual[out->n++];
     r->quantity = t->quantity;
     r->target = t->value;

@@ -15,8 +15,8 @@ int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, s
     const char *key = trial->variables[i].key;
     const struct brc_param *p = brc_params_find(list, key);
     if (!p || p->kind != BRC_REAL)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s is no quantity of the model", trial->model,
-                 key);
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s is not a quantity of the model",
+                 trial->model, key);
     bool is_pure = strcmp(p->unit, "1") == 0;
     int n = snprintf(buffer, size, "%s.%s=%.17g%s%s", trial->model, key, trial->x[i],
                      is_pure ? "" : " ", is_pure ? "" : p->unit);
@@ -41,11 +41,14 @@ static int read_job(struct brc_context *ctx, const struct calib_simulator *s,
     }
     overrides[trial->n] = "output.plots=off";
     BRC_TRY(brc_job_read(ctx, job, s->path[trial->test], overrides, (int)trial->n + 1));
-    if (job->test.kind != (int)trial->test)
+    if (job->test.kind != (int)trial->test) {
+        char kind[32];
+        brc_params_choice(brc_params_find(brc_test_param_list, "kind"), &job->test, kind,
+                          sizeof kind);
         BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "calibration: %s is given as the %s test, but its test.kind "
-                 "is %s",
-                 s->path[trial->test], test_names[trial->test], test_names[job->test.kind]);
+                 "calibration: %s is given as the %s test, but its test.kind is %s",
+                 s->path[trial->test], test_names[trial->test], kind);
+    }
     return 0;
 }
 

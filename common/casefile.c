@@ -18,6 +18,7 @@ const struct brc_param_list brc_case_param_list = BRC_PARAMS(case_params, struct
 struct level {
     char key[BRC_CASE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
     int line, column;            /* of that key */
+    size_t key_begin;            /* byte where it starts */
     int place;                   /* of the mapping in the sections, -1: the root */
     bool has_values;
 };
@@ -55,6 +56,14 @@ static size_t utf8_length(const unsigned char *s, size_t left)
     bool is_surrogate = code >= 0xd800 && code < 0xe000;
     bool is_mark = code == 0xfeff || code >= 0x110000; /* byte order mark, too large */
     return code < lowest[n] || is_control || is_surrogate || is_mark ? 0 : n;
+}
+
+bool brc_case_is_text(const char *text)
+{
+    size_t size = strlen(text), n = 1;
+    for (size_t i = 0; i < size && n > 0; i += n)
+        n = utf8_length((const unsigned char *)text + i, size - i);
+    return n > 0;
 }
 
 static int check_bytes(struct brc_context *ctx, const char *path, const char *text, size_t size)
@@ -198,6 +207,8 @@ static int take_value(struct reader *r, const char *text, int line)
                            top->key};
     BRC_TRY(add_entry(r->ctx, r->c, name, text, line));
     struct brc_case_entry *e = &r->c->entries[r->c->n - 1];
+    e->key_begin = top->key_begin;
+    e->place = top->place;
     e->begin = r->begin;
     e->end = r->end;
     e->indent = r->indent;
@@ -241,6 +252,7 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
         snprintf(top->key, sizeof top->key, "%s", text);
         top->line = line;
         top->column = (int)event->start_mark.column;
+        top->key_begin = byte_at(r, &event->start_mark);
         return 0;
     }
     if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0)) {

@@ -45,7 +45,9 @@ struct brc_case_entry {
     char *text;
     int line;          /* 1 is the first; 0: not from the file */
     bool is_override;  /* from --set */
-    size_t begin, end; /* bytes of the case's text that hold the value */
+    size_t key_begin;  /* byte of the case's text where the key starts */
+    size_t begin, end; /* bytes that hold the value */
+    int place;         /* of the mapping in the case's sections, -1: the root */
     int indent;        /* blanks that a value without line breaks needs before it there */
 };
 
@@ -110,6 +112,12 @@ const char *brc_case_text(const struct brc_case *c);
  * The case is then the one that the new text makes. */
 int brc_case_write(struct brc_context *ctx, struct brc_case *c, const char *section,
                    const char *key, struct brc_param_list list, const char *value);
+/* Takes a key out of the text of a case without overrides, with the line that it has to itself and
+ * the comment on it. */
+int brc_case_remove(struct brc_context *ctx, struct brc_case *c, const char *section,
+                    const char *key, struct brc_param_list list);
+/* Valid UTF-8 without control characters, but for line breaks and tabs. */
+bool brc_case_is_text(const char *text);
 /* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
 const char *brc_case_key(const struct brc_case_entry *e, struct brc_param_list list);
 void brc_case_free(struct brc_case *c);

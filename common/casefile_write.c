@@ -134,6 +134,49 @@ static int add(struct brc_context *ctx, struct brc_case *c, const char *section,
                  : add_to_section(ctx, c, section, key, value);
 }
 
+/* Is the entry all that its mapping holds? */
+static bool is_alone(const struct brc_case *c, const struct brc_case_entry *e)
+{
+    const char *name = e->place < 0 ? "" : c->sections[e->place].name;
+    size_t n = strlen(name);
+    for (size_t i = 0; i < c->n; i++)
+        if (&c->entries[i] != e && c->entries[i].place == e->place)
+            return false;
+    for (size_t i = 0; i < c->n_sections; i++) /* nested mappings */
+        if (n == 0 || (strncmp(c->sections[i].name, name, n) == 0 && c->sections[i].name[n] == '.'))
+            return false;
+    return true;
+}
+
+/* From its key on to the comma behind it, where there is one. */
+static struct edit flow_piece(const char *text, const struct brc_case_entry *e)
+{
+    size_t end = e->end + strspn(text + e->end, " \t\r\n");
+    return (struct edit){e->key_begin, text[end] == ',' ? end + 1 : e->end, NULL, 0, {""}};
+}
+
+/* Its whole lines. */
+static struct edit block_piece(const char *text, const struct brc_case_entry *e)
+{
+    size_t begin = e->key_begin, end = e->end + strcspn(text + e->end, "\n");
+    while (begin > 0 && text[begin - 1] == ' ')
+        begin--;
+    return (struct edit){begin, end + (text[end] == '\n'), NULL, 0, {""}};
+}
+
+int brc_case_remove(struct brc_context *ctx, struct brc_case *c, const char *section,
+                    const char *key, struct brc_param_list list)
+{
+    const struct brc_case_entry *e = brc_case_find_entry(c, section, key, list);
+    if (!e)
+        return 0;
+    const struct brc_case_place *place = e->place < 0 ? &c->root : &c->sections[e->place];
+    struct edit edit = place->form == BRC_CASE_FLOW ? flow_piece(c->text, e)
+                       : is_alone(c, e) ? (struct edit){e->key_begin, e->end, NULL, 0, {"{}"}}
+                                        : block_piece(c->text, e);
+    return apply(ctx, c, &edit);
+}
+
 int brc_case_write(struct brc_context *ctx, struct brc_case *c, const char *section,
                    const char *key, struct brc_param_list list, const char *value)
 {

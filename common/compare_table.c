@@ -113,12 +113,29 @@ static void put_end(FILE *out, const struct brc_summary *s)
     if (!s->is_finished)
         fprintf(out, "%s did not reach the end of the test: ended by %s\n", s->model, s->ended_by);
     else if (strength && !isfinite(strength->value))
-        fprintf(out, "%s: ended by %s, no failure: the load was still rising\n", s->model,
-                s->ended_by);
+        fprintf(out, "%s: ended by %s without a failure\n", s->model, s->ended_by);
     else if (strength && strcmp(s->ended_by, "test.stop_drop") != 0)
         fprintf(out,
                 "%s: ended by %s, past its peak, before the load had fallen to test.stop_drop\n",
                 s->model, s->ended_by);
+}
+
+/* Why a dash stands for a value; names with the same reason share a line. */
+static void put_notes(FILE *out, const struct brc_summary *s)
+{
+    for (int i = 0; i < s->n_results; i++) {
+        const char *note = s->results[i].note;
+        bool is_told = !note;
+        for (int k = 0; k < i && !is_told; k++)
+            is_told = s->results[k].note && strcmp(s->results[k].note, note) == 0;
+        if (is_told)
+            continue;
+        fprintf(out, "%s: %s", s->model, s->results[i].name);
+        for (int k = i + 1; k < s->n_results; k++)
+            if (s->results[k].note && strcmp(s->results[k].note, note) == 0)
+                fprintf(out, ", %s", s->results[k].name);
+        fprintf(out, ": %s\n", note);
+    }
 }
 
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n)
@@ -136,6 +153,8 @@ void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int 
     put_costs(out, summary, n);
     put_rule(out, n);
     fputs("broken: bonds, or local points where a model has several a contact\n", out);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         put_end(out, summary[i]);
+        put_notes(out, summary[i]);
+    }
 }

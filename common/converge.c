@@ -182,8 +182,11 @@ static void tell(const struct ladder *l, const struct task *t, const struct brc_
     const struct brc_result *what = &l->study.results[l->study.observable];
     char left[32], value[64];
     brc_progress_duration(l->weight_left / l->study.order->jobs, left, sizeof left);
-    snprintf(value, sizeof value, "%s %.4g %s", what->name, run->result[l->study.observable],
-             strcmp(what->unit, "1") == 0 ? "" : what->unit);
+    if (isfinite(run->result[l->study.observable]))
+        snprintf(value, sizeof value, "%s %.4g %s", what->name, run->result[l->study.observable],
+                 strcmp(what->unit, "1") == 0 ? "" : what->unit);
+    else
+        snprintf(value, sizeof value, "no %s", what->name);
     brc_log(l->ctx, "%d of %d  %s  %s %s  seed %d  %s%s  %" PRId64 " steps  %.2f s  about %s left",
             l->n_done, l->n_wanted, t->model->model->name, t->setting->axis, t->setting->label,
             l->study.order->job->specimen.seed + t->seed, *message ? "failed: " : "",

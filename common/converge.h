@@ -109,7 +109,7 @@ struct brc_converge_row {
     double value;                    /* mean of the observable */
     struct brc_converge_error error; /* choices and grains: difference to the case */
     double steps, cpu_s;             /* medians */
-    int n_good;                      /* runs that reached the end of the test */
+    int n_good;                      /* runs that reached the end and measured it */
     bool is_case;                    /* a rung that is the case as written */
 };
 

@@ -119,7 +119,8 @@ int brc_converge_job(struct brc_context *ctx, const struct brc_job *job,
     char text[sizeof s->text], seed[64], *rest = text;
     int n = 4;
     snprintf(seed, sizeof seed, "specimen.seed=%d", job->specimen.seed + i);
-    line[n++] = seed;
+    if (i > 0) /* seeds of a file have no number */
+        line[n++] = seed;
     memcpy(text, s->text, sizeof text);
     while (n < MAX_LINES && (line[n] = strtok_r(rest, "\n", &rest)))
         n++;

@@ -6,9 +6,11 @@
 
 const double brc_converge_within[2] = {0.01, 0.05};
 
-static bool is_good(const struct brc_converge_run *run)
+/* It reached the end of the test and measured the observable. */
+static bool is_good(const struct brc_converge_study *study, const struct brc_converge_run *run)
 {
-    return run->is_done && strncmp(run->ended_by, "test.", 5) == 0;
+    return run->is_done && strncmp(run->ended_by, "test.", 5) == 0 &&
+           isfinite(run->result[study->observable]);
 }
 
 /* Values of the observable over the specimens; NAN where a run has not reached the end. */
@@ -16,7 +18,7 @@ static void take_values(const struct brc_converge_study *study,
                         const struct brc_converge_setting *s, double *value)
 {
     for (int i = 0; i < study->order->seeds; i++)
-        value[i] = is_good(&s->run[i]) ? s->run[i].result[study->observable] : NAN;
+        value[i] = is_good(study, &s->run[i]) ? s->run[i].result[study->observable] : NAN;
 }
 
 static struct brc_converge_error difference(const struct brc_converge_study *study,
@@ -46,7 +48,7 @@ static void judge_row(const struct brc_converge_study *study, const struct brc_c
     for (int i = 0; i < n; i++) {
         steps[i] = (double)s->run[i].steps;
         cpu[i] = s->run[i].cpu_s;
-        row->n_good += is_good(&s->run[i]);
+        row->n_good += is_good(study, &s->run[i]);
     }
     row->value = brc_converge_mean(value, n);
     row->steps = brc_converge_median(steps, n);

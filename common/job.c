@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "job.h"
 
+#include "applies.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +30,12 @@ bool brc_job_section(int i, const char **name, struct brc_param_list *list)
 static void *section_values(struct brc_job *job, int i)
 {
     void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
+    return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
+}
+
+const void *brc_job_values(const struct brc_job *job, int i)
+{
+    const void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
     return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
 }
 
@@ -73,14 +81,24 @@ static int judge(struct brc_context *ctx, struct brc_job *job)
     int i = 0;
     for (; brc_job_section(i, &names[i], &list); i++)
         BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
+    BRC_TRY(brc_case_finish(ctx, &job->file, names, (size_t)i));
+    for (int k = 0; k < i; k++)
+        BRC_TRY(brc_applies_check(ctx, job, k, section_values(job, k)));
+    int code = brc_rig_check(ctx, &job->test);
+    if (code != 0)
+        brc_job_locate(ctx, job);
     choose_sides(job);
-    return brc_case_finish(ctx, &job->file, names, (size_t)i);
+    return code;
 }
 
 static int start(struct brc_context *ctx, struct brc_job *job, const char *path)
 {
     memset(job, 0, sizeof *job);
     take_name(job, path);
+    if (!brc_case_is_text(job->name))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "the name of the case file is not valid UTF-8 text, and it stands in the results; "
+                 "rename the file");
     return make_room(ctx, job);
 }
 

@@ -66,6 +66,8 @@ bool brc_job_is_input(const struct brc_job *job, const char *path);
 /* Names of files of the filled job as the working folder sees them. Done by brc_job_read. */
 int brc_job_find_files(struct brc_context *ctx, struct brc_job *job);
 
+/* The filled parameters of section number i, see below. */
+const void *brc_job_values(const struct brc_job *job, int i);
 /* The sections that every case may have, and those of the models: name and list of number i, false
  * past the last. */
 bool brc_job_section(int i, const char **name, struct brc_param_list *list);

@@ -4,6 +4,8 @@
 
 #include "job.h"
 
+#include "applies.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -177,12 +179,28 @@ static int keep_overrides(struct brc_context *ctx, const struct brc_case *from, 
     return 0;
 }
 
+/* Keys of the file that an override has made meaningless: without the override's name they would be
+ * errors. */
+static int drop_meaningless(struct brc_context *ctx, const struct brc_job *job, struct brc_case *c)
+{
+    const char *section, *clause;
+    struct brc_param_list list;
+    for (int i = 0; brc_job_section(i, &section, &list); i++)
+        for (int k = 0; k < list.n; k++) {
+            BRC_TRY(brc_applies(ctx, job, section, &list.params[k], &clause));
+            if (clause)
+                BRC_TRY(brc_case_remove(ctx, c, section, list.params[k].key, list));
+        }
+    return 0;
+}
+
 static int write_kept(struct brc_context *ctx, const struct brc_job *job,
                       const struct brc_model *model, const char *dir, struct brc_case *c)
 {
     const char *text = brc_case_text(&job->file);
     BRC_TRY(brc_case_parse(ctx, job->file.path, text, strlen(text), c));
     BRC_TRY(keep_overrides(ctx, &job->file, c));
+    BRC_TRY(drop_meaningless(ctx, job, c));
     BRC_TRY(keep_files(ctx, job, dir, c));
     if (strcmp(c->head.model, model->name) == 0)
         return 0;

@@ -92,6 +92,10 @@ static void json_results(FILE *out, const struct brc_summary *s)
         json_number(out, r->value);
         fputs(", \"unit\": ", out);
         json_text(out, r->unit);
+        if (r->note) {
+            fputs(", \"note\": ", out);
+            json_text(out, r->note);
+        }
         fputc('}', out);
     }
     fputs(s->n_results ? "\n  }\n" : "}\n", out);

@@ -16,7 +16,7 @@
          "pictures: only cracks that have opened or slipped by this many times their mean") \
     CHOICE(view, "auto|side|top", "auto",                                                   \
            "pictures: from the side, or along z; auto: by the test")                        \
-    INT(picture_height, "1000", "[200, 8000]", "pictures: pixels")                          \
+    INT(picture_height, "1000", "[200, 8000]", "pictures: pixels", "plots=on")              \
     INT(frames, "0", "[0, 99999]",                                                          \
         "frames for ParaView: this many beside the first, by what happens; 0: none")        \
     REAL(frame_strain, "1", "0", "[0, 10)",                                                 \
@@ -38,11 +38,12 @@ struct brc_frame_count {
     size_t n_points, n_cells;
 };
 
-/* A measured value; name and unit are static texts. */
+/* A measured value; name, unit and note are static texts. */
 struct brc_summary_value {
     const char *name;
-    double value;
+    double value; /* NAN: not measured */
     const char *unit;
+    const char *note; /* why not; NULL where it was */
 };
 
 enum { BRC_SUMMARY_MAX_RESULTS = 32 };

@@ -38,8 +38,13 @@ struct brc_param {
     const char *default_text; /* as written in a case file; NULL: must be given */
     const char *range;        /* interval in SI units, "(0, inf)", "[0, 1]"; NULL: any */
     const char *choices;      /* CHOICE only */
-    const char *meaning;
     size_t offset;
+    const char *meaning;
+    /* Where other keys decide whether this one has a meaning, else NULL: clauses "key=a|b" between
+     * commas, each of which must hold; " or " stands between the parts of a clause. A key of
+     * another section is "section.key"; a value is a choice, auto or 0. To give the key elsewhere
+     * is an error, see applies.h. */
+    const char *applies;
 };
 
 struct brc_param_list {
@@ -52,31 +57,40 @@ struct brc_param_list {
         (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner) \
     }
 
-#define BRC_PARAM_M_REAL(name, unit, def, range, meaning)  double name;
-#define BRC_PARAM_M_INT(name, def, range, meaning)         int name;
-#define BRC_PARAM_M_CHOICE(name, choices, def, meaning)    int name;
-#define BRC_PARAM_M_FLAG(name, def, meaning)               int name;
-#define BRC_PARAM_M_TEXT(name, def, meaning)               char name[BRC_TEXT_SIZE];
-#define BRC_PARAM_M_REAL3(name, unit, def, range, meaning) double name[3];
-#define BRC_PARAM_M_INT3(name, def, range, meaning)        int name[3];
+/* After what is named here come the meaning and, where it is not always, when the key applies. */
+#define BRC_PARAM_M_REAL(name, u, d, r, ...)  double name;
+#define BRC_PARAM_M_INT(name, d, r, ...)      int name;
+#define BRC_PARAM_M_CHOICE(name, c, d, ...)   int name;
+#define BRC_PARAM_M_FLAG(name, d, ...)        int name;
+#define BRC_PARAM_M_TEXT(name, d, ...)        char name[BRC_TEXT_SIZE];
+#define BRC_PARAM_M_REAL3(name, u, d, r, ...) double name[3];
+#define BRC_PARAM_M_INT3(name, d, r, ...)     int name[3];
 #define BRC_PARAM_MEMBERS(LIST)                                                   \
     LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_CHOICE, BRC_PARAM_M_FLAG, \
          BRC_PARAM_M_TEXT, BRC_PARAM_M_REAL3, BRC_PARAM_M_INT3)
 
-#define BRC_PARAM_L_REAL(name, unit, def, range, meaning) \
-    {#name, BRC_REAL, unit, def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_INT(name, def, range, meaning) \
-    {#name, BRC_INT, "1", def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_CHOICE(name, choices, def, meaning) \
-    {#name, BRC_CHOICE, "1", def, NULL, choices, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_FLAG(name, def, meaning) \
-    {#name, BRC_FLAG, "1", def, NULL, "off|on", meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_TEXT(name, def, meaning) \
-    {#name, BRC_TEXT, "1", def, NULL, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_REAL3(name, unit, def, range, meaning) \
-    {#name, BRC_REAL3, unit, def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
-#define BRC_PARAM_L_INT3(name, def, range, meaning) \
-    {#name, BRC_INT3, "1", def, range, NULL, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_PARAM_ROW(name, k, u, d, r, c, ...) \
+    {.key = #name,                              \
+     .kind = k,                                 \
+     .unit = u,                                 \
+     .default_text = d,                         \
+     .range = r,                                \
+     .choices = c,                              \
+     .offset = offsetof(BRC_OWNER, name),       \
+     .meaning = __VA_ARGS__},
+#define BRC_PARAM_L_REAL(name, u, d, r, ...) \
+    BRC_PARAM_ROW(name, BRC_REAL, u, d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_INT(name, d, r, ...) BRC_PARAM_ROW(name, BRC_INT, "1", d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_CHOICE(name, c, d, ...) \
+    BRC_PARAM_ROW(name, BRC_CHOICE, "1", d, NULL, c, __VA_ARGS__)
+#define BRC_PARAM_L_FLAG(name, d, ...) \
+    BRC_PARAM_ROW(name, BRC_FLAG, "1", d, NULL, "off|on", __VA_ARGS__)
+#define BRC_PARAM_L_TEXT(name, d, ...) \
+    BRC_PARAM_ROW(name, BRC_TEXT, "1", d, NULL, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_REAL3(name, u, d, r, ...) \
+    BRC_PARAM_ROW(name, BRC_REAL3, u, d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_INT3(name, d, r, ...) \
+    BRC_PARAM_ROW(name, BRC_INT3, "1", d, r, NULL, __VA_ARGS__)
 #define BRC_PARAM_LIST(LIST)                                                      \
     LIST(BRC_PARAM_L_REAL, BRC_PARAM_L_INT, BRC_PARAM_L_CHOICE, BRC_PARAM_L_FLAG, \
          BRC_PARAM_L_TEXT, BRC_PARAM_L_REAL3, BRC_PARAM_L_INT3)

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "rig.h"
 
+#include "gauge.h"
 #include "lanes.h"
 #include "sim.h"
 #include "vec.h"
 
-#include <gsl/gsl_fit.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,11 +40,39 @@ enum { LEAST_START = 20 };
 /* Automatic strain of a step over strain_max: adaptive loading's first one, over the target too,
  * and that of fixed loading. */
 static const double FIRST_PART = 0.005, FIXED_PART = 1e-5;
-enum { UNBALANCED_STEPS = 5 }; /* steps between two measures of the unbalanced force */
+enum { UNBALANCED_STEPS = 5 };        /* steps between two measures of the unbalanced force */
+static const double PLATENS_MEET = 1; /* strain in compression and in the Brazilian test */
 
 int brc_rig_platens(const struct brc_test_params *test)
 {
     return test->kind == BRC_TEST_NONE ? 0 : 2;
+}
+
+/* Two keys that bound something between them. */
+static int check_pair(struct brc_context *ctx, const char *low, double low_value, const char *high,
+                      double high_value)
+{
+    if (low_value < high_value)
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "test.%s = %g must be below test.%s = %g", low, low_value, high,
+             high_value);
+}
+
+int brc_rig_check(struct brc_context *ctx, const struct brc_test_params *t)
+{
+    if (t->kind == BRC_TEST_NONE)
+        return 0;
+    if (t->kind != BRC_TEST_TENSION && t->strain_max >= PLATENS_MEET)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "test.strain_max = %g: the platens meet at a strain of 1; allowed in compression "
+                 "and in the Brazilian test (0, 1)",
+                 t->strain_max);
+    if (t->loading == BRC_LOADING_ADAPTIVE && t->rate_min > t->rate_max)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "test.rate_min = %g 1/s is above test.rate_max = %g 1/s, so no rate is allowed: "
+                 "lower the one or raise the other",
+                 t->rate_min, t->rate_max);
+    return check_pair(ctx, "modulus_low", t->modulus_low, "modulus_high", t->modulus_high);
 }
 
 /* Area that the force is divided by: the mean section, or pi D T / 2 (gt12 eq 16). */
@@ -101,6 +129,7 @@ double brc_rig_start_rate(const struct brc_test_params *test)
 int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
 {
     struct brc_rig *rig = &sim->rig;
+    BRC_TRY(brc_rig_check(sim->ctx, test));
     rig->params = *test;
     rig->params.rate = brc_rig_start_rate(test);
     rig->n_platens = brc_rig_platens(test);
@@ -118,6 +147,7 @@ int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test)
     }
     if (rig->n_platens == 0)
         return 0;
+    brc_gauge_judge(sim);
     rig->rate = rig->params.rate;
     set_platen_velocities(sim);
     for (size_t i = 0; i < sim->bodies.n_grains; i++) {
@@ -276,32 +306,6 @@ static void change_rate(struct brc_sim *sim)
     sim->rig.rate *= factor;
 }
 
-/* Least-squares slope of the displacement along k against the place along k, over the gauge grains;
- * the minus sign makes shortening positive. */
-static double gauge_strain(const struct brc_sim *sim, int k)
-{
-    const struct brc_bodies *b = &sim->bodies;
-    const struct brc_rig *rig = &sim->rig;
-    if (rig->n_platens == 0)
-        return 0;
-    double middle = sim->bodies.x0[rig->platen[0].body][rig->axis] +
-                    0.5 * rig->length * rig->platen[0].n[rig->axis];
-    double reach = 0.5 * rig->length * rig->params.gauge;
-    double n = 0, sx = 0, su = 0, sxx = 0, sxu = 0;
-    for (size_t i = 0; i < b->n_grains; i++) {
-        if (fabs(b->x0[i][rig->axis] - middle) > reach)
-            continue;
-        double x = b->x0[i][k], u = b->x[i][k] - x;
-        n += 1;
-        sx += x;
-        su += u;
-        sxx += x * x;
-        sxu += x * u;
-    }
-    double spread = n * sxx - sx * sx;
-    return spread > 0 ? -(n * sxu - sx * su) / spread : 0;
-}
-
 static int add_row(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -319,9 +323,9 @@ static int add_row(struct brc_sim *sim)
     c->strain[i] = mean;
     c->force[i] = rig->n_summed > 0 ? rig->force_sum / steps : 0;
     c->stress[i] = c->force[i] / rig->section;
-    c->strain_axial[i] = part * rig->sense * gauge_strain(sim, rig->axis);
-    c->strain_lateral[i] =
-        part * rig->sense * 0.5 * (gauge_strain(sim, across[0]) + gauge_strain(sim, across[1]));
+    c->strain_axial[i] = part * rig->sense * brc_gauge_strain(sim, rig->axis);
+    c->strain_lateral[i] = part * rig->sense * 0.5 *
+                           (brc_gauge_strain(sim, across[0]) + brc_gauge_strain(sim, across[1]));
     c->rate[i] = rig->rate;
     c->unbalanced[i] = rig->unbalanced;
     c->kinetic_ratio[i] = stored > 0 ? l->kinetic / stored : 0;
@@ -363,6 +367,11 @@ int brc_rig_step(struct brc_sim *sim)
         return 0;
     measure_platens(sim);
     rig->strain += rig->rate * sim->dt;
+    if (rig->sense > 0 && rig->strain >= PLATENS_MEET)
+        BRC_FAIL(sim->ctx, BRC_ERR_BLOWUP,
+                 "the platens have met at step %lld, at a strain of %g: lower test.strain_max (now "
+                 "%g) or test.rate",
+                 (long long)sim->step, rig->strain, rig->params.strain_max);
     rig->strain_sum += rig->strain;
     if (sim->step % UNBALANCED_STEPS == 0) {
         rig->unbalanced = unbalanced_ratio(sim);
@@ -389,7 +398,7 @@ bool brc_rig_done(const struct brc_sim *sim)
     size_t n = rig->curve.table.n;
     if (rig->strain >= rig->params.strain_max)
         return true;
-    return n > 0 && rig->force_peak > 0 && sim->events.table.n > 0 &&
+    return n > 0 && rig->params.stop_drop > 0 && rig->force_peak > 0 && sim->events.table.n > 0 &&
            rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
 }
 
@@ -406,94 +415,6 @@ double brc_rig_steps_left(const struct brc_sim *sim)
         rate = fmin(fmax(rate, rig->params.rate_min), rig->params.rate_max);
     }
     return left / (rate * sim->dt);
-}
-
-double brc_rig_unbalanced_max(const struct brc_sim *sim)
-{
-    const struct brc_curve *c = &sim->rig.curve;
-    double largest = 0, peak = sim->rig.force_peak;
-    for (size_t i = 0; i < c->table.n; i++) {
-        if (c->force[i] >= 0.1 * peak)
-            largest = fmax(largest, c->unbalanced[i]);
-        if (c->force[i] == peak)
-            break;
-    }
-    return largest;
-}
-
-/* Rows between the two parts of the peak, on the way up: [*first, *end). */
-static void modulus_rows(const struct brc_rig *rig, size_t *first, size_t *end)
-{
-    const struct brc_curve *c = &rig->curve;
-    double peak = rig->force_peak;
-    size_t i = 0;
-    while (i < c->table.n && c->force[i] < rig->params.modulus_low * peak)
-        i++;
-    *first = i;
-    while (i < c->table.n && c->force[i] <= rig->params.modulus_high * peak)
-        i++;
-    *end = i;
-}
-
-static double slope(const double *x, const double *y, size_t n)
-{
-    double c0, c1, cov00, cov01, cov11, chi2;
-    if (n < 2)
-        return NAN;
-    gsl_fit_linear(x, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
-    return c1;
-}
-
-static void add_result(struct brc_result *out, int *n, const char *name, double value,
-                       const char *unit)
-{
-    out[(*n)++] = (struct brc_result){name, value, unit};
-}
-
-/* Primary slope: force per thickness at half the strain of the peak, over that strain. */
-static double brazilian_slope(const struct brc_sim *sim)
-{
-    const struct brc_rig *rig = &sim->rig;
-    double low[3], high[3], half = rig->strain_peak / 2;
-    brc_specimen_extent(sim->specimen, low, high);
-    size_t i = 0;
-    while (i < rig->curve.table.n && rig->curve.strain[i] < half)
-        i++;
-    if (i == rig->curve.table.n || half <= 0)
-        return NAN;
-    return 2 * rig->curve.force[i] / (2 * half * (high[2] - low[2])); /* eq:gt12:17 */
-}
-
-int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS])
-{
-    static const char *const broken[BRC_N_MODES] = {"broken_tension", "broken_shear",
-                                                    "broken_torsion"};
-    const struct brc_rig *rig = &sim->rig;
-    const struct brc_curve *c = &rig->curve;
-    size_t first, end;
-    int n = 0;
-    modulus_rows(rig, &first, &end);
-    if (rig->params.kind == BRC_TEST_NONE) {
-        for (int m = 0; m < BRC_N_MODES; m++)
-            add_result(out, &n, broken[m], (double)sim->events.count[m], "1");
-        return n;
-    }
-    if (rig->params.kind == BRC_TEST_BRAZILIAN) {
-        add_result(out, &n, "S", brazilian_slope(sim), "Pa");
-    } else {
-        double axial = slope(c->strain_axial + first, c->stress + first, end - first);
-        double lateral = slope(c->strain_axial + first, c->strain_lateral + first, end - first);
-        add_result(out, &n, "E", axial, "Pa");    /* eq:gt12:25 */
-        add_result(out, &n, "nu", -lateral, "1"); /* eq:gt12:24 */
-        add_result(out, &n, "E_platen", slope(c->strain + first, c->stress + first, end - first),
-                   "Pa");
-    }
-    add_result(out, &n, "strength", rig->force_peak / rig->section, "Pa");
-    add_result(out, &n, "strain_at_peak", rig->strain_peak, "1");
-    add_result(out, &n, "force_peak", rig->force_peak, "N");
-    for (int m = 0; m < BRC_N_MODES; m++)
-        add_result(out, &n, broken[m], (double)sim->events.count[m], "1");
-    return n;
 }
 
 void brc_rig_restore(struct brc_sim *sim)

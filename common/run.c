@@ -314,6 +314,18 @@ static int step_loop(struct run *r)
 
 /* ---- output -------------------------------------------------------------------------------- */
 
+/* A result without a note was measured, and is a number. */
+static int check_results(struct brc_context *ctx, const struct brc_summary *s)
+{
+    for (int i = 0; i < s->n_results; i++)
+        if (!s->results[i].note && !isfinite(s->results[i].value))
+            BRC_FAIL(ctx, BRC_ERR_BLOWUP,
+                     "the result %s is not finite (%g): values of the case, or what follows from "
+                     "them, are too large or too small for numbers of double precision",
+                     s->results[i].name, s->results[i].value);
+    return 0;
+}
+
 static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
@@ -350,7 +362,9 @@ static int measure(const struct run *r, struct brc_summary *s)
     s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
     s->n_results = brc_rig_results(sim, result);
     for (int i = 0; i < s->n_results; i++)
-        s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit};
+        s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit,
+                                                   result[i].note};
+    BRC_TRY(check_results(r->ctx, s));
     memcpy(s->frame, r->frames.last, sizeof s->frame);
     int code = brc_fragments_find(r->ctx, sim, &fragments);
     s->n_fragments = fragments.n;
@@ -388,6 +402,9 @@ static int write_results(struct run *r, struct brc_summary *out)
     BRC_TRY(write_tables(r));
     BRC_TRY(in_folder(r->ctx, r->order->dir, "summary.json", path));
     BRC_TRY(brc_output_summary(r->ctx, path, out));
+    for (int i = 0; i < out->n_results; i++)
+        if (out->results[i].note)
+            note(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
     note(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by, out->steps,
          out->state_hash);
     return draw(r);

@@ -21,21 +21,31 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
         regime, "dynamic|quasi_static", "quasi_static",                                           \
         "dynamic: true mass, viscous contact damping; quasi_static: scaled mass, step 1, local "  \
         "damping")                                                                                \
-    REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error")  \
-    REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit")         \
+    REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error",  \
+         "regime=dynamic")                                                                        \
+    REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit",         \
+         "regime=dynamic, dt=0")                                                                  \
     REAL(mass_margin, "1", "1.2", "(0, 100]",                                                     \
          "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "    \
-         "measured, and an unstable step is an error")                                            \
+         "measured, and an unstable step is an error",                                            \
+         "regime=quasi_static")                                                                   \
     REAL(local_damping, "1", "0.7", "[0, 1)",                                                     \
-         "quasi_static: local non-viscous damping alpha against the whole motion")                \
+         "quasi_static: local non-viscous damping alpha against the whole motion",                \
+         "regime=quasi_static, damped=auto|motion, damped=motion or test.loading=fixed or "       \
+         "test.kind=none")                                                                        \
     REAL(fluctuation_damping, "1", "0.3", "[0, 1)",                                               \
-         "quasi_static: alpha against the fluctuation about the mean motion, in its place")       \
+         "quasi_static: alpha against the fluctuation about the mean motion, in its place",       \
+         "regime=quasi_static, damped=auto|fluctuation, damped=fluctuation or "                   \
+         "test.loading=adaptive")                                                                 \
     CHOICE(damping, "cartesian|along_velocity", "cartesian",                                      \
-           "local damping per Cartesian component as printed, or along the velocity")             \
+           "local damping per Cartesian component as printed, or along the velocity",             \
+           "regime=quasi_static")                                                                 \
     CHOICE(damped, "auto|motion|fluctuation", "auto",                                             \
            "local damping acts against the whole motion, as printed, or against its fluctuation " \
-           "about the mean of the last steps; auto: fluctuation under adaptive loading")          \
-    REAL(damping_memory, "1", "35", "[1, inf)", "steps that this mean reaches back")              \
+           "about the mean of the last steps; auto: fluctuation under adaptive loading",          \
+           "regime=quasi_static")                                                                 \
+    REAL(damping_memory, "1", "35", "[1, inf)", "steps that this mean reaches back",              \
+         "regime=quasi_static, damped=fluctuation or test.loading=adaptive")                      \
     REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")             \
     FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")                \
     REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                    \
@@ -84,10 +94,11 @@ struct brc_rig {
     struct brc_test_params params;
     int n_platens;
     struct brc_platen platen[BRC_MAX_PLATENS];
-    int axis;       /* of the load: 2 = z, 1 = y */
-    double sense;   /* +1 compression, -1 tension */
-    double length;  /* m, distance of the platens at the start */
-    double section; /* m2, area that force is divided by */
+    int axis;          /* of the load: 2 = z, 1 = y */
+    double sense;      /* +1 compression, -1 tension */
+    double length;     /* m, distance of the platens at the start */
+    double section;    /* m2, area that force is divided by */
+    bool has_gauge[3]; /* grains enough, far enough apart for a strain along x, y, z */
     BRC_RIG_SCALARS(BRC_SCALAR_MEMBER)
     struct brc_curve {
         BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)

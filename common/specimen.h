@@ -19,32 +19,46 @@ enum brc_grains {
 
 #define BRC_SPECIMEN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                            \
     CHOICE(shape, "box|cylinder|polyhedron", "cylinder", "outer shape")                            \
-    REAL3(size, "m", "10 cm, 10 cm, 10 cm", "(0, inf)", "box: edge lengths along x, y, z")         \
-    REAL(diameter, "m", "80 mm", "(0, inf)", "cylinder: diameter of the circle")                   \
-    REAL(height, "m", "160 mm", "(0, inf)", "cylinder: height (thickness of a disc), along z")     \
+    REAL3(size, "m", "10 cm, 10 cm, 10 cm", "(0, inf)", "box: edge lengths along x, y, z",         \
+          "shape=box")                                                                             \
+    REAL(diameter, "m", "80 mm", "(0, inf)", "cylinder: diameter of the circle", "shape=cylinder") \
+    REAL(height, "m", "160 mm", "(0, inf)", "cylinder: height (thickness of a disc), along z",     \
+         "shape=cylinder")                                                                         \
     INT(sides, "0", "[0, 1024]",                                                                   \
         "cylinder: sides of the prism, equal area to the circle; even; 0: 256 in a Brazilian "     \
-        "test, 64 in others, and 30 for a mesh, as in gt12")                                       \
-    TEXT(planes, "", "polyhedron: file of planes, one 'nx ny nz d' a line, n . x <= d, in metres") \
+        "test, 64 in others, and 30 for a mesh, as in gt12",                                       \
+        "shape=cylinder")                                                                          \
+    TEXT(planes, "", "polyhedron: file of planes, one 'nx ny nz d' a line, n . x <= d, in metres", \
+         "shape=polyhedron, grains=packing|grid|mesh|points")                                      \
     CHOICE(grains, "packing|grid|mesh|points|tess", "packing",                                     \
            "packing: spheres grown to contact, Laguerre cells; grid: one random seed per cubic "   \
            "cell, Voronoi cells; mesh: extruded triangles of a disc; points: seeds of a file; "    \
            "tess: cells and shape of a Neper file")                                                \
-    TEXT(points, "", "points: file of seeds, 'x y z' or 'x y z radius' a line, in metres")         \
-    TEXT(tess, "", "tess: tessellation file of Neper (.tess), three-dimensional, flat faces")      \
-    REAL(tess_unit, "m", "1 m", "(0, inf)", "tess: what the length 1 is in the file")              \
-    FLAG(tess_spheres, "off", "tess: weights of the seeds are radii of spheres")                   \
-    REAL(diameter_min, "m", "4 mm", "(0, inf)", "packing: smallest sphere diameter")               \
-    REAL(diameter_max, "m", "6 mm", "(0, inf)", "packing: largest sphere diameter")                \
-    REAL(solid_fraction, "1", "0.676", "(0.1, 0.75)", "packing: sphere volume / domain volume")    \
-    INT(count, "0", "[0, 10000000]", "packing: number of spheres; 0: from the solid fraction")     \
-    INT3(cells, "10, 10, 10", "[1, 1000]", "grid: cubic cells along x, y, z")                      \
-    REAL(jitter, "1", "1", "[0, 1]", "grid: width of the seeds' random box, in cells; 0: exact")   \
-    REAL(triangle_area, "m2", "5 cm2", "(0, inf)", "mesh: largest triangle area")                  \
-    INT(seed, "1", "[0, 2147483647]", "random seed")                                               \
+    TEXT(points, "", "points: file of seeds, 'x y z' or 'x y z radius' a line, in metres",         \
+         "grains=points")                                                                          \
+    TEXT(tess, "", "tess: tessellation file of Neper (.tess), three-dimensional, flat faces",      \
+         "grains=tess")                                                                            \
+    REAL(tess_unit, "m", "1 m", "(0, inf)", "tess: what the length 1 is in the file",              \
+         "grains=tess")                                                                            \
+    FLAG(tess_spheres, "off", "tess: weights of the seeds are radii of spheres", "grains=tess")    \
+    REAL(diameter_min, "m", "4 mm", "(0, inf)", "packing: smallest sphere diameter",               \
+         "grains=packing")                                                                         \
+    REAL(diameter_max, "m", "6 mm", "(0, inf)", "packing: largest sphere diameter",                \
+         "grains=packing")                                                                         \
+    REAL(solid_fraction, "1", "0.676", "(0.1, 0.75)", "packing: sphere volume / domain volume",    \
+         "grains=packing, count=0")                                                                \
+    INT(count, "0", "[0, 10000000]", "packing: number of spheres; 0: from the solid fraction",     \
+        "grains=packing")                                                                          \
+    INT3(cells, "10, 10, 10", "[1, 1000]", "grid: cubic cells along x, y, z", "grains=grid")       \
+    REAL(jitter, "1", "1", "[0, 1]", "grid: width of the seeds' random box, in cells; 0: exact",   \
+         "grains=grid")                                                                            \
+    REAL(triangle_area, "m2", "5 cm2", "(0, inf)", "mesh: largest triangle area", "grains=mesh")   \
+    INT(seed, "1", "[0, 2147483647]", "random seed", "grains=packing|grid")                        \
     REAL(min_area_ratio, "1", "1e-4", "[0, 0.1]",                                                  \
-         "facets below this part of the mean area are no contacts")                                \
-    FLAG(cache, "on", "keep finished packings on disk (BRECCIA_CACHE, else ~/.cache/breccia)")
+         "facets below this part of the mean area are no contacts",                                \
+         "grains=packing|grid|points|tess")                                                        \
+    FLAG(cache, "on", "keep finished packings on disk (BRECCIA_CACHE, else ~/.cache/breccia)",     \
+         "grains=packing")
 
 struct brc_specimen_params {
     BRC_PARAM_MEMBERS(BRC_SPECIMEN_PARAMS)

@@ -20,33 +20,41 @@
     REAL(radius, "m", "auto", "(0, inf)",                                                         \
          "sphero-radius R of erosion and rounding, eq 2; auto: by radius_ratio")                  \
     REAL(radius_ratio, "1", "0.05", "(0, 0.5)",                                                   \
-         "radius auto: R over the mean grain size, the cube root of the mean volume")             \
+         "radius auto: R over the mean grain size, the cube root of the mean volume",             \
+         "radius=auto")                                                                           \
     REAL(kn, "N/m", "auto", "(0, inf)",                                                           \
          "normal stiffness K_n of a feature contact, eq 4; auto: by kn_modulus")                  \
     REAL(kn_modulus, "Pa", "9.2 GPa", "(0, inf)",                                                 \
-         "kn auto: K_n over mean facet area / mean distance of the cell centres")                 \
+         "kn auto: K_n over mean facet area / mean distance of the cell centres", "kn=auto")      \
     REAL(kt, "N/m", "auto", "[0, inf)",                                                           \
          "tangential stiffness K_t of a feature contact, eq 8; auto: by kt_ratio")                \
-    REAL(kt_ratio, "1", "0.6", "[0, 10]", "kt auto: K_t over K_n")                                \
+    REAL(kt_ratio, "1", "0.6", "[0, 10]", "kt auto: K_t over K_n", "kt=auto")                     \
     REAL(mu, "1", "0.85", "[0, 10]", "friction coefficient of grains")                            \
-    REAL(gn, "1/s", "2529.8 1/s", "[0, inf)", "normal viscosity, eq 10; dynamic regime only")     \
-    REAL(gt, "1/s", "0 1/s", "[0, inf)", "tangential viscosity, eq 10; dynamic regime only")      \
+    REAL(gn, "1/s", "2529.8 1/s", "[0, inf)", "normal viscosity, eq 10; dynamic regime only",     \
+         "run.regime=dynamic")                                                                    \
+    REAL(gt, "1/s", "0 1/s", "[0, inf)", "tangential viscosity, eq 10; dynamic regime only",      \
+         "run.regime=dynamic")                                                                    \
     FLAG(bonds, "on", "bonds where the specimen has facets; off: a cohesionless pack")            \
-    FLAG(breakable, "on", "bonds break by eq 15")                                                 \
-    REAL(bn, "Pa", "9 GPa", "[0, inf)", "normal modulus of the bonds, eq 11")                     \
-    REAL(bt, "Pa", "1.1 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13")               \
-    REAL(bm, "Pa", "0.18 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14")                 \
-    REAL(eps_th, "1", "2.66e-3", "(0, inf)", "strain limit of the bonds, eq 15")                  \
-    FLAG(theta_limit, "on", "eq 15 has its torsion term; off: only strains break bonds")          \
-    REAL(theta_th, "rad", "0.05 rad", "(0, inf)", "torsion limit of the bonds, eq 15")            \
+    FLAG(breakable, "on", "bonds break by eq 15", "bonds=on")                                     \
+    REAL(bn, "Pa", "9 GPa", "[0, inf)", "normal modulus of the bonds, eq 11", "bonds=on")         \
+    REAL(bt, "Pa", "1.1 GPa", "[0, inf)", "tangential modulus of the bonds, eq 13", "bonds=on")   \
+    REAL(bm, "Pa", "0.18 GPa", "[0, inf)", "torsion modulus of the bonds, eq 14",                 \
+         "bonds=on, torsion=on")                                                                  \
+    REAL(eps_th, "1", "2.66e-3", "(0, inf)", "strain limit of the bonds, eq 15",                  \
+         "bonds=on, breakable=on")                                                                \
+    FLAG(theta_limit, "on", "eq 15 has its torsion term; off: only strains break bonds",          \
+         "bonds=on, breakable=on, torsion=on")                                                    \
+    REAL(theta_th, "rad", "0.05 rad", "(0, inf)", "torsion limit of the bonds, eq 15",            \
+         "bonds=on, breakable=on, torsion=on, theta_limit=on")                                    \
     CHOICE(                                                                                       \
         strain_length, "gap|centres", "centres",                                                  \
-        "strains are per gap between the eroded faces (2 R) or per distance of the cell centres") \
+        "strains are per gap between the eroded faces (2 R) or per distance of the cell centres", \
+        "bonds=on")                                                                               \
     CHOICE(area, "eroded|facet", "facet",                                                         \
-           "bond area: mean of the two eroded faces, or the facet's own")                         \
-    FLAG(torsion, "on", "bonds resist torsion, eq 14")                                            \
+           "bond area: mean of the two eroded faces, or the facet's own", "bonds=on")             \
+    FLAG(torsion, "on", "bonds resist torsion, eq 14", "bonds=on")                                \
     REAL(torsion_length, "m", "0 m", "[0, inf)",                                                  \
-         "length that makes eq 14 a torque; 0: the strain length")                                \
+         "length that makes eq 14 a torque; 0: the strain length", "bonds=on, torsion=on")        \
     CHOICE(features, "closed|strict|merged", "merged",                                            \
            "feature pairs that are springs: all within reach, eq 1; feet strictly inside; each "  \
            "physical contact once, with a continuous force")                                      \
@@ -55,7 +63,9 @@
            "sum, linear in the motion since all were computed; auto: condensed where features "   \
            "are not closed, in the quasi-static regime")                                          \
     REAL(condensed_path, "1", "0.005", "(0, 0.05]",                                               \
-         "condensed: relative path, in radii R, until all are computed anew")
+         "condensed: relative path, in radii R, until all are computed anew",                     \
+         "evaluation=auto|condensed, features=strict|merged, evaluation=condensed or "            \
+         "run.regime=quasi_static")
 
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
 enum poly_area { POLY_AREA_ERODED, POLY_AREA_FACET };

@@ -24,19 +24,25 @@ enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERAC
     CHOICE(softening, "none|linear|bilinear", "bilinear",                                         \
            "after the peak; none: brittle, the fracture energies are not used")                   \
     REAL(softening_beta, "1", "0.25", "(0, 1)",                                                   \
-         "bilinear: strength at the kink over the peak strength")                                 \
+         "bilinear: strength at the kink over the peak strength", "softening=bilinear")           \
     REAL(softening_w1, "1", "0.75", "(0, 2)",                                                     \
          "bilinear: displacement past the peak at the kink, in (post-peak energy)/strength; it "  \
-         "ends at (2 - w1)/beta")                                                                 \
-    REAL(g_fn, "J/m2", "auto", "(0, inf)", "fracture energy in tension; auto: by energy_ratio")   \
-    REAL(g_fs, "J/m2", "auto", "(0, inf)", "fracture energy in shear; auto: by energy_ratio")     \
+         "ends at (2 - w1)/beta",                                                                 \
+         "softening=bilinear")                                                                    \
+    REAL(g_fn, "J/m2", "auto", "(0, inf)", "fracture energy in tension; auto: by energy_ratio",   \
+         "softening=linear|bilinear")                                                             \
+    REAL(g_fs, "J/m2", "auto", "(0, inf)", "fracture energy in shear; auto: by energy_ratio",     \
+         "softening=linear|bilinear")                                                             \
     REAL(energy_ratio, "1", "9.5", "(1, 1e6]",                                                    \
          "g_fn, g_fs auto: fracture energy over the elastic energy at the peak of a contact of "  \
-         "the mean distance")                                                                     \
+         "the mean distance",                                                                     \
+         "softening=linear|bilinear, g_fn=auto or g_fs=auto")                                     \
     CHOICE(damage, "displacement|strength", "displacement",                                       \
-           "opening and slip add as parts of their end displacements, or as losses of strength")  \
+           "opening and slip add as parts of their end displacements, or as losses of strength",  \
+           "softening=linear|bilinear")                                                           \
     CHOICE(energies, "total|post_peak", "total",                                                  \
-           "g_fn and g_fs count from zero displacement, or from the peak on")                     \
+           "g_fn and g_fs count from zero displacement, or from the peak on",                     \
+           "softening=linear|bilinear")                                                           \
     CHOICE(                                                                                       \
         points, "paper|exact|one", "paper",                                                       \
         "paper: vertices and centroid; exact: the same drawn in to the facet's second moments; "  \
@@ -44,14 +50,18 @@ enum vgcm_interaction { VGCM_INTERACTION_GAP, VGCM_INTERACTION_ALL, VGCM_INTERAC
     CHOICE(interaction, "gap|all|area", "gap",                                                    \
            "which facets are contacts: spheres nearer than the gap, all, or large facets")        \
     REAL(interaction_gap, "m", "0 m", "[0, inf)",                                                 \
-         "gap: largest gap of two spheres that are bonded; 0: interaction_gap_ratio holds")       \
-    REAL(interaction_gap_ratio, "1", "0.17", "(0, 10]", "gap: the same in mean sphere diameters") \
+         "gap: largest gap of two spheres that are bonded; 0: interaction_gap_ratio holds",       \
+         "interaction=gap")                                                                       \
+    REAL(interaction_gap_ratio, "1", "0.17", "(0, 10]", "gap: the same in mean sphere diameters", \
+         "interaction=gap, interaction_gap=0")                                                    \
     REAL(interaction_area, "1", "0.67", "[0, 10]",                                                \
-         "area: smallest facet that is bonded, in mean areas of the inner facets")                \
+         "area: smallest facet that is bonded, in mean areas of the inner facets",                \
+         "interaction=area")                                                                      \
     CHOICE(oblique, "refuse|keep", "refuse",                                                      \
            "facets far from normal to the lines of centres: an error, or kept all the same")      \
     REAL(viscous, "1/s", "0 1/s", "[0, inf)",                                                     \
-         "dynamic regime: viscous force = this times effective mass times relative velocity")
+         "dynamic regime: viscous force = this times effective mass times relative velocity",     \
+         "run.regime=dynamic")
 
 struct vgcm_params {
     BRC_PARAM_MEMBERS(VGCM_PARAMS)

@@ -67,7 +67,7 @@ static void make(struct brc_context *ctx, struct brc_sim *sim, const struct brc_
     set(ctx, brc_test_param_list, &t, "kind", kind);
     set(ctx, brc_test_param_list, &t, "loading", "fixed");
     set(ctx, brc_test_param_list, &t, "rate", rate);
-    set(ctx, brc_test_param_list, &t, "strain_max", "1");
+    set(ctx, brc_test_param_list, &t, "strain_max", "0.99");
     if (getenv("BENCH_SIMD"))
         set(ctx, brc_run_param_list, &r, "simd", getenv("BENCH_SIMD"));
     must(ctx, brc_sim_create(ctx, sim, &brc_model_polyhedra, &p, specimen, &t, &r));

@@ -145,7 +145,7 @@ refuse 3 bad.yaml:4 "specimen.cells: 0 is out of range; allowed [1, 1000]" -- \
 refuse 3 "no sphere fits" "enlarge the specimen or lower specimen.diameter_min" -- \
     run case.yaml -o $results --force --set specimen.grains=packing \
     --set specimen.diameter_min="9 cm" --set specimen.diameter_max="9 cm"
-sed 's/grains: grid/grains: points, points: seeds.txt/' case.yaml >points.yaml
+sed 's/grains: grid.*/grains: points, points: seeds.txt}/' case.yaml >points.yaml
 printf '# x y z\n0.01 0.01 0.01\n0.02 0.01 0.01\n0.01 0.01 0.01 # again\n' >seeds.txt
 refuse 3 points.yaml:4 "seeds.txt:4: the seed coincides with that of line 2 at (0.01, 0.01, 0.01)" \
     "remove or move one of them" -- run points.yaml -o $results --force
@@ -155,6 +155,22 @@ printf '0.01 0.01 0.01\n0.02 0.01 x\n' >seeds.txt
 refuse 3 points.yaml:4 "seeds.txt:2: no row of numbers" "x y z" -- run points.yaml -o $results --force
 printf '0.01 0.01 0.01\n0.02 0.01 9\n' >seeds.txt
 refuse 3 "seed 1 at (0.02, 0.01, 9) m lies outside" -- run points.yaml -o $results --force
+edited bad.yaml 's/strain_max: 0.002/strain_max: 2/'
+refuse 3 bad.yaml:5: "test.strain_max = 2: the platens meet at a strain of 1" \
+    "allowed in compression and in the Brazilian test (0, 1)" -- run bad.yaml -o $results --force
+edited bad.yaml 's/loading: fixed, rate: 2e-5 1\/s/rate_min: 2e-5 1\/s, rate_max: 1e-5 1\/s/'
+refuse 3 bad.yaml:5: "test.rate_min = 2e-05 1/s is above test.rate_max = 1e-05 1/s" -- \
+    run bad.yaml -o $results --force
+edited bad.yaml 's/cells: .3, 3, 4./diameter: 3 cm/'
+refuse 3 bad.yaml:4: "specimen.diameter: applies only with shape=cylinder, but specimen.shape is box" \
+    "what applies now is size" -- run bad.yaml -o $results --force
+edited bad.yaml 's/regime: quasi_static/dt: 1e-8 s/'
+refuse 3 bad.yaml:7: "run.dt: applies only with regime=dynamic" "mass_margin" -- \
+    run bad.yaml -o $results --force
+name=$(printf 'c\351.yaml')
+if cp case.yaml "$name" 2>/dev/null; then
+    refuse 3 "the name of the case file is not valid UTF-8" "rename the file" -- run "$name"
+fi
 edited bad.yaml 's/regime: quasi_static/{regime: dynamic, dt: 1 s}/'
 refuse 3 bad.yaml:7 "run.dt = 1 s is above the stable limit of" "use at most that, or 0 s" -- \
     run bad.yaml -o $results --force
@@ -278,7 +294,7 @@ more >/dev/null || fail "the run does not go on after all refusals"
 # the largest step that is accepted at rest is too large for the contacts that close
 for model in vgcm polyhedra; do
     run case.yaml --model $model -o fast/$model --set test.rate="0.5 1/s" \
-        --set test.strain_max=5 >out.txt 2>err.txt
+        --set test.strain_max=0.9 >out.txt 2>err.txt
     got=$?
     [ $got -eq 6 ] || fail "a blow-up of $model ends with $got"
     for text in "unstable at step 1, time 1 s: platen 36" "its contact with grain" "stiffness" \

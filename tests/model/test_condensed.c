@@ -18,7 +18,7 @@ static void load(struct fixture *f, const char *kind, const char *settings, cons
 {
     char all[320], test[100];
     snprintf(all, sizeof all, FIXTURE_TABLE_1 "; %s", settings);
-    snprintf(test, sizeof test, "kind: %s; loading: fixed; rate: 4e-6 1/s; strain_max: 1", kind);
+    snprintf(test, sizeof test, "kind: %s; loading: fixed; rate: 4e-6 1/s; strain_max: 0.99", kind);
     fixture_specimen(f, "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
                         "jitter: 0.6; seed: 3");
     fixture_sim(f, &brc_model_polyhedra, all, test, run);

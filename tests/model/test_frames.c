@@ -11,7 +11,7 @@
 
 static const char specimen[] = "shape: box; grains: grid; size: 3 cm, 3 cm, 4 cm; cells: 3, 3, 4; "
                                "jitter: 0.6; seed: 3";
-static const char test[] = "kind: compression; loading: fixed; rate: 1e-4 1/s; strain_max: 1";
+static const char test[] = "kind: compression; loading: fixed; rate: 1e-4 1/s; strain_max: 0.99";
 
 /* Volume of each grain by the cones of its polygons over the origin: closed and outward, or it is
  * another one. */

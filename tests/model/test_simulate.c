@@ -88,6 +88,12 @@ static void bad_runs_are_named(void **state)
     t.n = 1;
     CHECK_FAILS(&ctx, calib_objective_evaluate(&ctx, &o, x, &v), BRC_ERR_INPUT,
                 "is given as the tension test, but its test.kind is compression");
+    FILE *file = fopen(p->path, "w");
+    assert_non_null(file);
+    fputs("breccia: 1\ntest: {kind: none}\n", file);
+    fclose(file);
+    CHECK_FAILS(&ctx, calib_objective_evaluate(&ctx, &o, x, &v), BRC_ERR_INPUT,
+                "is given as the tension test, but its test.kind is none");
     o.model = "vgmc";
     CHECK_FAILS(&ctx, calib_objective_evaluate(&ctx, &o, x, &v), BRC_ERR_INPUT, "vgmc");
     calib_simulator_free(&s);
@@ -96,8 +102,8 @@ static void bad_runs_are_named(void **state)
 static void assignments_are_exact(void **state)
 {
     static const struct brc_param params[] = {
-        {"a", BRC_REAL, "Pa", "1 Pa", NULL, NULL, "a", 0},
-        {"b", BRC_REAL, "1", "1", NULL, NULL, "b", 8},
+        {"a", BRC_REAL, "Pa", "1 Pa", NULL, NULL, 0, "a", NULL},
+        {"b", BRC_REAL, "1", "1", NULL, NULL, 8, "b", NULL},
     };
     static const struct calib_variable free_ones[] = {{"a", 0, 1}, {"b", 0, 1}, {"c", 0, 1}};
     struct brc_param_list list = {params, 2, 16};

@@ -365,7 +365,7 @@ static void fake_result(struct brc_summary *out, const struct fake *f, const cha
 {
     if (f->lost && strcmp(f->lost, name) == 0)
         return;
-    out->results[out->n_results++] = (struct brc_summary_value){name, value, unit};
+    out->results[out->n_results++] = (struct brc_summary_value){name, value, unit, NULL};
 }
 
 static int fake_run(struct brc_context *c, void *user, const struct calib_trial *trial,
@@ -456,9 +456,9 @@ static void objective_errors_are_named(void **state)
 static void objective_is_checked(void **state)
 {
     static const struct brc_param params[] = {
-        {"a", BRC_REAL, "Pa", "1 Pa", NULL, NULL, "a", 0},
-        {"b", BRC_REAL, "1", "1", NULL, NULL, "b", 8},
-        {"count", BRC_INT, "1", "1", NULL, NULL, "n", 16},
+        {"a", BRC_REAL, "Pa", "1 Pa", NULL, NULL, 0, "a", NULL},
+        {"b", BRC_REAL, "1", "1", NULL, NULL, 8, "b", NULL},
+        {"count", BRC_INT, "1", "1", NULL, NULL, 16, "n", NULL},
     };
     struct brc_param_list list = {params, 3, 24};
     struct calib_targets t = fake_targets();

@@ -105,7 +105,7 @@ static void put(struct brc_converge_model *m, enum brc_converge_role role, const
 static void make_study(struct brc_converge_study *study, struct brc_converge_setting *settings)
 {
     struct brc_converge_model *m = &study->model[0];
-    study->results[1] = (struct brc_result){"strength", 0, "Pa"};
+    study->results[1] = (struct brc_result){"strength", 0, "Pa", NULL};
     study->n_results = 2;
     study->observable = 1;
     study->n_models = 1;
@@ -158,6 +158,12 @@ static void test_judge(void **state)
     assert_true(isnan(report.row[5].error.mean));
     assert_int_equal(report.row[5].n_good, 1);
     assert_int_equal(report.cheapest[1], 4);
+    /* and so does one whose load was still rising at the end */
+    snprintf(settings[5].run[1].ended_by, sizeof settings[5].run[1].ended_by, "test.strain_max");
+    settings[5].run[1].result[1] = NAN;
+    brc_converge_judge(&study, 0, &report);
+    assert_true(isnan(report.row[5].error.mean));
+    assert_int_equal(report.row[5].n_good, 1);
 }
 
 static void test_print(void **state)

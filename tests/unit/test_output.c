@@ -91,20 +91,21 @@ static void make_path(char path[64], const char *name)
 
 static struct brc_summary sample(void)
 {
-    struct brc_summary s = {.model = "vgcm",
-                            .title = "a \"quoted\" back\\slash\nline",
-                            .case_name = "demo",
-                            .ended_by = "test.stop_drop",
-                            .is_finished = true,
-                            .seed = 7,
-                            .n_grains = 500,
-                            .steps = INT64_C(12345678901),
-                            .cpu_s = 0.1,
-                            .ns_per_contact_step = NAN,
-                            .energy_residual = HUGE_VAL,
-                            .state_hash = UINT64_C(0x00ab00000000000f),
-                            .n_results = 2,
-                            .results = {{"E", 48.8e9, "Pa"}, {"nu", NAN, "1"}}};
+    struct brc_summary s = {
+        .model = "vgcm",
+        .title = "a \"quoted\" back\\slash\nline",
+        .case_name = "demo",
+        .ended_by = "test.stop_drop",
+        .is_finished = true,
+        .seed = 7,
+        .n_grains = 500,
+        .steps = INT64_C(12345678901),
+        .cpu_s = 0.1,
+        .ns_per_contact_step = NAN,
+        .energy_residual = HUGE_VAL,
+        .state_hash = UINT64_C(0x00ab00000000000f),
+        .n_results = 2,
+        .results = {{"E", 48.8e9, "Pa", NULL}, {"nu", NAN, "1", "no \"gauge\""}}};
     return s;
 }
 
@@ -128,7 +129,8 @@ static void test_summary_is_json(void **state)
     assert_non_null(strstr(text, "\"ns_per_contact_step\": null"));
     assert_non_null(strstr(text, "\"energy_residual\": null"));
     assert_non_null(strstr(text, "\"E\": {\"value\": 48800000000, \"unit\": \"Pa\"}"));
-    assert_non_null(strstr(text, "\"nu\": {\"value\": null, \"unit\": \"1\"}"));
+    assert_non_null(
+        strstr(text, "\"nu\": {\"value\": null, \"unit\": \"1\", \"note\": \"no \\\"gauge\\\"\"}"));
     assert_non_null(strstr(text, "a \\\"quoted\\\" back\\\\slash\\u000aline"));
     free(text);
     unlink(path);
@@ -205,7 +207,7 @@ static void test_table(void **state)
     b.is_finished = false;
     strcpy(b.ended_by, "run.max_steps");
     b.results[0].value = 0.5e9;
-    b.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa"};
+    b.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa", NULL};
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
     brc_compare_table(out, both, 2);
@@ -216,6 +218,7 @@ static void test_table(void **state)
     assert_non_null(strstr(text, "nu                                       -               -\n"));
     assert_non_null(strstr(text, "polyhedra did not reach the end of the test: ended by "
                                  "run.max_steps\n"));
+    assert_non_null(strstr(text, "\nvgcm: nu: no \"gauge\"\n"));
     free(text);
 }
 
@@ -241,7 +244,7 @@ static void test_end_of_table(void **state)
 {
     (void)state;
     struct brc_summary s = sample();
-    s.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa"};
+    s.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa", NULL};
     char *text = end_of_table(&s);
     assert_null(strstr(text, "ended by"));
     free(text);
@@ -250,10 +253,10 @@ static void test_end_of_table(void **state)
     assert_string_equal(text, "vgcm: ended by test.strain_max, past its peak, before the load had "
                               "fallen to test.stop_drop\n");
     free(text);
-    s.results[1].value = NAN;
+    s.results[0] = (struct brc_summary_value){"force_peak", NAN, "N", "no peak"};
+    s.results[1] = (struct brc_summary_value){"strength", NAN, "Pa", "no peak"};
     text = end_of_table(&s);
-    assert_string_equal(text,
-                        "vgcm: ended by test.strain_max, no failure: the load was still rising\n");
+    assert_string_equal(text, "vgcm: force_peak, strength: no peak\n");
     free(text);
 }
 

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a test reports: values that were measured, and why others were not. */
+#include "tests/fixture.h"
+
+#include <stdio.h>
+
+static const char elastic[] = "interaction: all; sigma_t: 1e3 MPa; tau: 1e3 MPa; softening: none",
+                  weak[] = "interaction: all; sigma_t: 1 MPa; tau: 8 MPa; softening: none",
+                  pull[] = "kind: tension; loading: fixed; rate: 1e-6 1/s; strain_max: 3e-4; "
+                           "stop_drop: 0.2";
+
+static void load(struct fixture *f, const char *model, const char *test, int most)
+{
+    fixture_sim(f, brc_registry_find("vgcm"), model, test, "");
+    while (!brc_rig_done(&f->sim) && f->sim.step < most)
+        fixture_steps(f, 1);
+}
+
+static struct brc_result result(const struct fixture *f, const char *name)
+{
+    struct brc_result all[BRC_MAX_RESULTS];
+    int n = brc_rig_results(&f->sim, all);
+    for (int i = 0; i < n; i++)
+        if (strcmp(all[i].name, name) == 0)
+            return all[i];
+    fail_msg("no result %s", name);
+    return all[0];
+}
+
+static void check_measured(const struct fixture *f, const char *name)
+{
+    struct brc_result r = result(f, name);
+    if (r.note || !isfinite(r.value))
+        fail_msg("%s = %g: %s", name, r.value, r.note ? r.note : "without a note");
+}
+
+static void check_missing(const struct fixture *f, const char *name, const char *note)
+{
+    struct brc_result r = result(f, name);
+    if (!isnan(r.value) || !r.note || !strstr(r.note, note))
+        fail_msg("%s = %g, expected none: %s; the note is %s", name, r.value, note, r.note);
+}
+
+static void a_load_that_rises_has_no_strength(void **state)
+{
+    struct fixture *f = *state;
+    const char *const of_the_peak[] = {"strength", "strain_at_peak", "force_peak"};
+    fixture_grid(f, 3, 3, 6, 0.01, 0.7);
+    load(f, elastic, pull, 1000);
+    for (int i = 0; i < 3; i++)
+        check_missing(f, of_the_peak[i], "the load was still rising");
+    check_measured(f, "E");
+    check_measured(f, "nu");
+    assert_true(f->sim.rig.force_peak > 0);
+    load(f, weak, pull, 1000);
+    assert_true(f->sim.events.table.n > 0);
+    for (int i = 0; i < 3; i++)
+        check_measured(f, of_the_peak[i]);
+    fixture_grid(f, 3, 3, 3, 0.01, 0.7);
+    load(f, elastic, "kind: brazilian; loading: fixed; rate: 1e-6 1/s; strain_max: 1e-4", 1000);
+    check_missing(f, "S", "the load was still rising");
+    check_missing(f, "strength", "the load was still rising");
+}
+
+static void without_a_row_nothing_is_measured(void **state)
+{
+    struct fixture *f = *state;
+    fixture_grid(f, 3, 3, 4, 0.01, 0.7);
+    load(f, elastic, "kind: tension; loading: fixed; rate: 1e-6 1/s; sample_steps: 100", 99);
+    assert_int_equal(f->sim.rig.curve.table.n, 0);
+    const char *const names[] = {"E", "nu", "E_platen", "strength", "strain_at_peak", "force_peak"};
+    for (int i = 0; i < 6; i++)
+        check_missing(f, names[i], "fewer steps than test.sample_steps");
+}
+
+/* A middle layer alone has no strain but that of its round-off. */
+static void moduli_need_a_gauge(void **state)
+{
+    struct fixture *f = *state;
+    fixture_grid(f, 3, 3, 3, 0.01, 0);
+    load(f, elastic, pull, 1000);
+    check_missing(f, "E", "fewer than 4 grains in the gauge");
+    check_missing(f, "nu", "fewer than 4 grains in the gauge");
+    check_measured(f, "E_platen");
+    assert_true(isnan(f->sim.rig.curve.strain_axial[5]));
+    fixture_grid(f, 3, 3, 4, 0.01, 0);
+    load(f, elastic, pull, 1000);
+    check_measured(f, "E");
+    check_measured(f, "nu");
+    fixture_grid(f, 1, 1, 8, 0.01, 0); /* a column has no width */
+    load(f, elastic, pull, 1000);
+    check_measured(f, "E");
+    check_missing(f, "nu", "across the load");
+    fixture_grid(f, 1, 1, 4, 0.01, 0); /* two grains */
+    load(f, elastic, pull, 1000);
+    check_missing(f, "E", "fewer than 4 grains in the gauge");
+}
+
+/* `stop_drop: 0` is never, also when the specimen pulls the platens together. */
+static void a_test_ends_at_no_drop(void **state)
+{
+    struct fixture *f = *state;
+    fixture_grid(f, 3, 3, 4, 0.01, 0.7);
+    load(f, weak, pull, 1000);
+    struct brc_rig *rig = &f->sim.rig;
+    assert_true(f->sim.events.table.n > 0 && rig->strain < rig->params.strain_max);
+    rig->curve.force[rig->curve.table.n - 1] = -1e-3 * rig->force_peak;
+    assert_true(brc_rig_done(&f->sim));
+    rig->params.stop_drop = 0;
+    assert_false(brc_rig_done(&f->sim));
+}
+
+static void platens_that_meet_end_the_run(void **state)
+{
+    struct fixture *f = *state;
+    fixture_grid(f, 2, 2, 2, 0.01, 0.5);
+    fixture_sim(f, brc_registry_find("vgcm"), "", "loading: fixed; rate: 1e-6 1/s", "");
+    fixture_steps(f, 2);
+    f->sim.rig.strain = 1 - 1e-7;
+    CHECK_FAILS(&f->ctx, brc_rig_step(&f->sim), BRC_ERR_BLOWUP,
+                "the platens have met at step 2, at a strain of 1: lower test.strain_max");
+    fixture_sim(f, brc_registry_find("vgcm"), "", "kind: tension; loading: fixed; rate: 1e-6 1/s",
+                "");
+    f->sim.rig.strain = 1;
+    CHECK_OK(&f->ctx, brc_rig_step(&f->sim));
+}
+
+static void check_test(struct fixture *f, const char *settings, const char *message)
+{
+    struct brc_test_params test;
+    CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_test_param_list, &test));
+    fixture_set(f, brc_test_param_list, &test, settings);
+    if (message)
+        CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INPUT, message);
+    else
+        CHECK_OK(&f->ctx, brc_rig_check(&f->ctx, &test));
+}
+
+static void keys_that_bound_each_other_are_in_order(void **state)
+{
+    struct fixture *f = *state;
+    check_test(f, "strain_max: 1", "test.strain_max = 1: the platens meet at a strain of 1");
+    check_test(f, "kind: brazilian; strain_max: 2", "test.strain_max = 2: the platens meet");
+    check_test(f, "kind: tension; strain_max: 2", NULL);
+    check_test(f, "rate_min: 2e-6 1/s; rate_max: 1e-6 1/s",
+               "test.rate_min = 2e-06 1/s is above test.rate_max = 1e-06 1/s");
+    check_test(f, "rate_min: 1e-6 1/s; rate_max: 1e-6 1/s", NULL);
+    check_test(f, "modulus_low: 0.3", "test.modulus_low = 0.3 must be below test.modulus_high");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(a_load_that_rises_has_no_strength),
+        FIXTURE_TEST(without_a_row_nothing_is_measured),
+        FIXTURE_TEST(moduli_need_a_gauge),
+        FIXTURE_TEST(a_test_ends_at_no_drop),
+        FIXTURE_TEST(platens_that_meet_end_the_run),
+        FIXTURE_TEST(keys_that_bound_each_other_are_in_order),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
