@@ -5,6 +5,7 @@
 
 #include <yaml.h>
 
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -256,6 +257,11 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
         return 0;
     }
     if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0)) {
+        if (isdigit((unsigned char)top->key[0]))
+            BRC_FAIL(r->ctx, BRC_ERR_INPUT,
+                     "%s:%d: '%s' follows a comma: in braces and brackets a comma ends a value, so "
+                     "write numbers with a decimal point",
+                     r->c->path, top->line, top->key);
         if (r->depth > 1 || brc_params_find(brc_case_param_list, top->key))
             BRC_FAIL(r->ctx, BRC_ERR_INPUT,
                      "%s:%d: %s: has no value; write one or leave the key out", r->c->path,
@@ -398,15 +404,27 @@ static int take_event(struct reader *r, const yaml_event_t *event)
     }
 }
 
+/* What YAML says of a line; a tab in it is the reason more often than not. */
+static int fail_yaml(struct reader *r, const yaml_parser_t *parser)
+{
+    const char *line = r->c->text;
+    for (size_t i = 0; i < parser->problem_mark.line && strchr(line, '\n'); i++)
+        line = strchr(line, '\n') + 1;
+    size_t blanks = strspn(line, " \t");
+    bool has_tab = memchr(line, '\t', blanks) != NULL;
+    BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: not valid YAML: %s%s%s%s", r->c->path,
+             (int)parser->problem_mark.line + 1,
+             has_tab ? "the line is indented by a tab, indent it by blanks; " : "",
+             parser->problem ? parser->problem : "unreadable", parser->context ? ", " : "",
+             parser->context ? parser->context : "");
+}
+
 static int take_events(struct reader *r, yaml_parser_t *parser)
 {
     yaml_event_t event;
     for (bool is_end = false; !is_end;) {
         if (!yaml_parser_parse(parser, &event))
-            BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: not valid YAML: %s%s%s", r->c->path,
-                     (int)parser->problem_mark.line + 1,
-                     parser->problem ? parser->problem : "unreadable", parser->context ? ", " : "",
-                     parser->context ? parser->context : "");
+            return fail_yaml(r, parser);
         int code = take_event(r, &event);
         is_end = event.type == YAML_STREAM_END_EVENT;
         yaml_event_delete(&event);
@@ -429,84 +447,6 @@ static int parse_yaml(struct brc_context *ctx, struct brc_case *c, size_t size)
     return code;
 }
 
-/* ---- top level ----------------------------------------------------------------------------- */
-
-static const struct brc_case_entry *find_entry(const struct brc_case *c, const char *section,
-                                               const char *key)
-{
-    for (size_t i = 0; i < c->n; i++)
-        if (strcmp(c->entries[i].section, section) == 0 && strcmp(c->entries[i].key, key) == 0)
-            return &c->entries[i];
-    return NULL;
-}
-
-static int check_version(struct brc_context *ctx, const struct brc_case *c)
-{
-    const struct brc_case_entry *e = find_entry(c, "", "breccia");
-    char here[16];
-    snprintf(here, sizeof here, "%d", BRC_CASE_VERSION);
-    if (!e)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%s: breccia: required key is missing; a case file starts with the version of "
-                 "its format, `breccia: %s`",
-                 c->path, here);
-    if (strcmp(e->text, here) != 0)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%s:%d: breccia: '%.60s' is another version of the case format; allowed %s; use "
-                 "the breccia that the case was written for, or compare the keys with `breccia "
-                 "params` and write `breccia: %s`",
-                 c->path, e->line, e->text, here, here);
-    return 0;
-}
-
-/* Keys and sections that stand in each other's place. */
-static int check_top_level(struct brc_context *ctx, const struct brc_case *c)
-{
-    char where[BRC_CASE_WHERE_SIZE];
-    for (size_t i = 0; i < c->n_sections; i++)
-        if (brc_params_find(brc_case_param_list, c->sections[i].name))
-            BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: takes a text, not a mapping",
-                     brc_case_where(c, c->sections[i].line, c->sections[i].line == 0, where),
-                     c->sections[i].name);
-    for (size_t i = 0; i < c->n; i++) {
-        const struct brc_case_entry *e = &c->entries[i];
-        if (*e->section || brc_params_find(brc_case_param_list, e->key))
-            continue;
-        const char *nearest = brc_params_nearest(brc_case_param_list, e->key);
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%s: %s: unknown key of the top level; allowed breccia, title, model, models and "
-                 "sections, which are mappings `%s: {key: value}`%s%s%s",
-                 brc_case_where(c, e->line, e->is_override, where), e->key, e->key,
-                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
-    }
-    return 0;
-}
-
-/* Splits `models` at commas and blanks. */
-static int split_models(struct brc_context *ctx, struct brc_case *c)
-{
-    c->n_models = 0;
-    for (const char *text = c->head.models; *(text += strspn(text, ", ")) != '\0';) {
-        size_t n = strcspn(text, ", ");
-        if (c->n_models == BRC_CASE_MAX_MODELS || n >= BRC_CASE_KEY_SIZE)
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: models: more than %d names, or a name of more than %d "
-                     "characters",
-                     c->path, BRC_CASE_MAX_MODELS, BRC_CASE_KEY_SIZE - 1);
-        snprintf(c->models[c->n_models++], BRC_CASE_KEY_SIZE, "%.*s", (int)n, text);
-        text += n;
-    }
-    return 0;
-}
-
-static int read_top_level(struct brc_context *ctx, struct brc_case *c)
-{
-    BRC_TRY(check_version(ctx, c));
-    BRC_TRY(check_top_level(ctx, c));
-    BRC_TRY(brc_case_section(ctx, c, "", brc_case_param_list, &c->head));
-    return split_models(ctx, c);
-}
-
 /* ---- interface ----------------------------------------------------------------------------- */
 
 int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
@@ -521,7 +461,7 @@ int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, 
     strcpy(c->path, path);
     memcpy(c->text, text, size);
     BRC_TRY(parse_yaml(ctx, c, size));
-    return read_top_level(ctx, c);
+    return brc_case_top_level(ctx, c);
 }
 
 int brc_case_read(struct brc_context *ctx, const char *path, struct brc_case *c)
@@ -573,7 +513,7 @@ int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *a
     if (*name[0] && !brc_case_find_section(c, name[0]))
         BRC_TRY(add_section(ctx, c, name[0], 0));
     BRC_TRY(add_entry(ctx, c, name, equals + 1 + strspn(equals + 1, " "), 0));
-    return read_top_level(ctx, c);
+    return brc_case_top_level(ctx, c);
 }
 
 const char *brc_case_text(const struct brc_case *c)

@@ -94,6 +94,8 @@ int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *a
  * missing keys, bad values and a key given twice are errors. */
 int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const char *section,
                      struct brc_param_list list, void *values);
+/* Judges and fills the keys of the top level, overrides included. */
+int brc_case_top_level(struct brc_context *ctx, struct brc_case *c);
 /* Where a section was opened, NULL when neither the file nor an override has it. */
 const struct brc_case_place *brc_case_find_section(const struct brc_case *c, const char *section);
 /* The entry that gives a key its value, NULL when it has its default. */

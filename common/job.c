@@ -74,11 +74,38 @@ static void choose_sides(struct brc_job *job)
         s->sides = CORE_SIDES;
 }
 
+/* A section, or a key of the top level, that stands as if it were a key of another section. */
+static int check_indents(struct brc_context *ctx, const struct brc_job *job)
+{
+    const struct brc_case *c = &job->file;
+    const char *section;
+    struct brc_param_list list;
+    for (int i = 0; brc_job_section(i, &section, &list); i++)
+        for (size_t k = 0; k < c->n_sections; k++) {
+            const char *name = c->sections[k].name, *dot = strchr(name, '.');
+            if (dot && strcmp(dot + 1, section) == 0)
+                BRC_FAIL(ctx, BRC_ERR_INPUT,
+                         "%s:%d: %s is a section, but it is indented under %.*s; write it in the "
+                         "first column",
+                         c->path, c->sections[k].line, section, (int)(dot - name), name);
+        }
+    for (size_t k = 0; k < c->n; k++) {
+        const struct brc_case_entry *e = &c->entries[k];
+        if (*e->section && !e->is_override && brc_params_find(brc_case_param_list, e->key))
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s:%d: %s is a key of the top level, but it is indented under %s; write it "
+                     "in the first column",
+                     c->path, e->line, e->key, e->section);
+    }
+    return 0;
+}
+
 static int judge(struct brc_context *ctx, struct brc_job *job)
 {
     const char *names[N_COMMON + BRC_JOB_MAX_MODELS];
     struct brc_param_list list;
     int i = 0;
+    BRC_TRY(check_indents(ctx, job));
     for (; brc_job_section(i, &names[i], &list); i++)
         BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
     BRC_TRY(brc_case_finish(ctx, &job->file, names, (size_t)i));

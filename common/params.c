@@ -107,6 +107,11 @@ int brc_params_quantity(struct brc_context *ctx, const char *text, const char *u
     if (!trimmed(text, strlen(text), clean, sizeof clean))
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: '%.60s...' is too long for a quantity", where, text);
     size_t length = split_quantity(clean, &own);
+    if (length > 0 && clean[length] == ',' && isdigit((unsigned char)clean[length + 1]))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: '%.60s' has a decimal comma; write a decimal point, '%.*s.%.40s', and no "
+                 "mark between thousands",
+                 where, clean, (int)length, clean, clean + length + 1);
     if (length == 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: '%.60s' does not start with a finite decimal number; write for example "
@@ -287,9 +292,11 @@ static int set_triple(struct brc_context *ctx, const struct brc_param *p, void *
         size_t n = strcspn(c, ",");
         bool last = c[n] == '\0';
         if (last != (i == 2) || !trimmed(c, n, part, sizeof part))
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: '%.60s' must be three values between commas, as in %s", place, text,
-                     p->default_text ? p->default_text : "'1, 2, 3'");
+            BRC_FAIL(
+                ctx, BRC_ERR_INPUT,
+                "%s: '%.60s' must be three values between commas, as in %s; numbers have a decimal "
+                "point",
+                place, text, p->default_text ? p->default_text : "'1, 2, 3'");
         if (p->kind == BRC_REAL3)
             BRC_TRY(set_real(ctx, p, &real[i], part, place));
         else
@@ -355,47 +362,6 @@ const struct brc_param *brc_params_find(struct brc_param_list list, const char *
     return NULL;
 }
 
-int brc_params_distance(const char *a, const char *b)
-{
-    int row[NAME_SIZE + 1];
-    size_t na = strlen(a), nb = strlen(b);
-    if (na >= NAME_SIZE || nb >= NAME_SIZE)
-        return INT_MAX;
-    for (size_t j = 0; j <= nb; j++)
-        row[j] = (int)j;
-    for (size_t i = 1; i <= na; i++) {
-        int corner = row[0];
-        row[0] = (int)i;
-        for (size_t j = 1; j <= nb; j++) {
-            int change =
-                corner + (tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]));
-            int shift = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
-            corner = row[j];
-            row[j] = change < shift ? change : shift;
-        }
-    }
-    return row[nb];
-}
-
-const char *brc_params_nearest(struct brc_param_list list, const char *key)
-{
-    const char *nearest = NULL;
-    int best = INT_MAX;
-    for (int i = 0; i < list.n; i++) {
-        int d = brc_params_distance(key, list.params[i].key);
-        if (d < best) {
-            best = d;
-            nearest = list.params[i].key;
-        }
-    }
-    return nearest && brc_params_is_near(key, best) ? nearest : NULL;
-}
-
-bool brc_params_is_near(const char *text, int distance)
-{
-    return distance <= (int)(strlen(text) / 2);
-}
-
 /* Up to size bytes of "a, b, c". */
 static void list_keys(struct brc_param_list list, char *buffer, size_t size)
 {
@@ -434,7 +400,11 @@ int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *va
         return code;
     }
     const char *nearest = brc_params_nearest(list, key);
+    const struct brc_param *meant = nearest ? NULL : brc_params_meant(list, key);
     list_keys(list, keys, sizeof keys);
+    if (meant)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: unknown key; did you mean '%s' (%s)? allowed %s", place,
+                 meant->key, meant->meaning, keys);
     BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: unknown key; allowed %s%s%s%s", place, keys,
              nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
 }

@@ -113,6 +113,8 @@ int brc_params_quantity(struct brc_context *ctx, const char *text, const char *u
  * is near. */
 const struct brc_param *brc_params_find(struct brc_param_list list, const char *key);
 const char *brc_params_nearest(struct brc_param_list list, const char *key);
+/* The param whose meaning has most of the words of the key, NULL when it has none of 4 letters. */
+const struct brc_param *brc_params_meant(struct brc_param_list list, const char *key);
 /* Edit distance without regard to case, INT_MAX for names of 128 bytes or more; is_near tells
  * whether it is small enough for "did you mean". */
 int brc_params_distance(const char *a, const char *b);

@@ -153,6 +153,40 @@ static void keys_without_a_meaning_are_not_kept(void **state)
                "breccia: 1\nmodel: vgcm\nvgcm:\n  {} # much\nrun: {regime: quasi_static}\n");
 }
 
+static void sections_stand_in_the_first_column(void **state)
+{
+    (void)state;
+    bad("breccia: 1\nspecimen:\n  shape: box\n  test:\n    kind: tension\n",
+        "c.yaml:4: test is a section, but it is indented under specimen; write it in the first "
+        "column");
+    bad("breccia: 1\nvgcm:\n  polyhedra: {radius: 1 mm}\n",
+        "c.yaml:3: polyhedra is a section, but it is indented under vgcm");
+    bad("breccia: 1\nspecimen:\n  seed: 3\n  title: foo\n",
+        "c.yaml:4: title is a key of the top level, but it is indented under specimen");
+}
+
+static void usual_slips_are_named(void **state)
+{
+    (void)state;
+    bad("breccia: 1\nvgcm:\n  e_bar: 48,8 GPa\n",
+        "c.yaml:3: vgcm.e_bar: '48,8 GPa' has a decimal comma; write a decimal point, '48.8 GPa'");
+    bad("breccia: 1\nvgcm: {e_bar: 48,8 GPa}\n",
+        "c.yaml:2: '8 GPa' follows a comma: in braces and brackets a comma ends a value, so write "
+        "numbers with a decimal point");
+    bad("breccia: 1\nspecimen: {shape: box, size: '4,5 cm, 1 cm, 1 cm'}\n", "decimal point");
+    bad("breccia: 1\nvgcm:\n\te_bar: 1 GPa\n",
+        "c.yaml:3: not valid YAML: the line is indented by a tab, indent it by blanks");
+    bad("breccia: 1\nvgcm:\n  mu: 0.1\n \te_bar: 1 GPa\n", "the line is indented by a tab");
+    bad("breccia: 1\nvgcm:\n  mu: 0.1\n tau: 1 GPa\n", "c.yaml:4: not valid YAML: ");
+    bad("breccia: 1\nvgcm: {youngs_modulus: 5 GPa}\n",
+        "vgcm.youngs_modulus: unknown key; did you mean 'e_bar' (modulus of the equivalent "
+        "continuum, eq 28)? allowed density");
+    bad("breccia: 1\nvgcm: {cohesion: 5 GPa}\n", "did you mean 'tau' (cohesion of a point");
+    bad("breccia: 1\nvgcm: {sigmat: 5 MPa}\n", "did you mean 'sigma_t'?");
+    bad("breccia: 1\nmodels: [vgcm, polyhedra, vgcm]\n",
+        "c.yaml:2: models: vgcm is named twice; name each model once");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -160,6 +194,8 @@ int main(void)
         cmocka_unit_test(every_key_is_judged),
         cmocka_unit_test(an_override_makes_another_case),
         cmocka_unit_test(keys_without_a_meaning_are_not_kept),
+        cmocka_unit_test(sections_stand_in_the_first_column),
+        cmocka_unit_test(usual_slips_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
