@@ -314,16 +314,26 @@ static int step_loop(struct run *r)
 
 /* ---- output -------------------------------------------------------------------------------- */
 
+static int check_finite(struct brc_context *ctx, const char *name, double value)
+{
+    if (isfinite(value))
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_BLOWUP,
+             "the result %s is not finite (%g): values of the case, or what follows from them, are "
+             "too large or too small for numbers of double precision",
+             name, value);
+}
+
 /* A result without a note was measured, and is a number. */
-static int check_results(struct brc_context *ctx, const struct brc_summary *s)
+static int check_results(const struct run *r, const struct brc_summary *s)
 {
     for (int i = 0; i < s->n_results; i++)
-        if (!s->results[i].note && !isfinite(s->results[i].value))
-            BRC_FAIL(ctx, BRC_ERR_BLOWUP,
-                     "the result %s is not finite (%g): values of the case, or what follows from "
-                     "them, are too large or too small for numbers of double precision",
-                     s->results[i].name, s->results[i].value);
-    return 0;
+        if (!s->results[i].note)
+            BRC_TRY(check_finite(r->ctx, s->results[i].name, s->results[i].value));
+    if (!r->sim.run.ledger)
+        return 0;
+    BRC_TRY(check_finite(r->ctx, "energy_residual", s->energy_residual));
+    return check_finite(r->ctx, "energy_drift", s->energy_drift);
 }
 
 static int measure(const struct run *r, struct brc_summary *s)
@@ -364,7 +374,7 @@ static int measure(const struct run *r, struct brc_summary *s)
     for (int i = 0; i < s->n_results; i++)
         s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit,
                                                    result[i].note};
-    BRC_TRY(check_results(r->ctx, s));
+    BRC_TRY(check_results(r, s));
     memcpy(s->frame, r->frames.last, sizeof s->frame);
     int code = brc_fragments_find(r->ctx, sim, &fragments);
     s->n_fragments = fragments.n;

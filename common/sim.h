@@ -31,12 +31,10 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
          "regime=quasi_static")                                                                   \
     REAL(local_damping, "1", "0.7", "[0, 1)",                                                     \
          "quasi_static: local non-viscous damping alpha against the whole motion",                \
-         "regime=quasi_static, damped=auto|motion, damped=motion or test.loading=fixed or "       \
-         "test.kind=none")                                                                        \
+         "regime=quasi_static, damped=auto|motion")                                               \
     REAL(fluctuation_damping, "1", "0.3", "[0, 1)",                                               \
          "quasi_static: alpha against the fluctuation about the mean motion, in its place",       \
-         "regime=quasi_static, damped=auto|fluctuation, damped=fluctuation or "                   \
-         "test.loading=adaptive")                                                                 \
+         "regime=quasi_static, damped=auto|fluctuation")                                          \
     CHOICE(damping, "cartesian|along_velocity", "cartesian",                                      \
            "local damping per Cartesian component as printed, or along the velocity",             \
            "regime=quasi_static")                                                                 \
@@ -44,11 +42,11 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
            "local damping acts against the whole motion, as printed, or against its fluctuation " \
            "about the mean of the last steps; auto: fluctuation under adaptive loading",          \
            "regime=quasi_static")                                                                 \
-    REAL(damping_memory, "1", "35", "[1, inf)", "steps that this mean reaches back",              \
-         "regime=quasi_static, damped=fluctuation or test.loading=adaptive")                      \
+    REAL(damping_memory, "1", "35", "[1, 1000]", "steps that this mean reaches back",             \
+         "regime=quasi_static, damped=auto|fluctuation or test.loading=adaptive")                 \
     REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")             \
     FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")                \
-    REAL(skin, "1", "0.2", "(0, 10]", "candidates: skin, in mean grain radii")                    \
+    REAL(skin, "1", "0.2", "[0.01, 0.5]", "candidates: skin, in mean grain radii")                \
     CHOICE(simd, "auto|base|avx2|avx512", "auto",                                                 \
            "instructions that hot loops use; the same bits with each of them")                    \
     INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")           \

@@ -304,4 +304,10 @@ for model in vgcm polyhedra; do
     [ "$(wc -l <err.txt)" -eq 1 ] || fail "a blow-up of $model says more than one line"
 done
 
+# numbers that leave the range of doubles: no result that is not finite, and no success
+run case.yaml -o huge --set vgcm.e_bar="1e250 Pa" >out.txt 2>err.txt
+got=$?
+[ $got -eq 6 ] || fail "energies that are not finite end with $got"
+grep -qF "the result energy_drift is not finite" err.txt || fail "no word of what is not finite"
+
 [ $failures -eq 0 ] || { cat err.txt; exit 1; }

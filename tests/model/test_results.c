@@ -125,6 +125,33 @@ static void platens_that_meet_end_the_run(void **state)
     CHECK_OK(&f->ctx, brc_rig_step(&f->sim));
 }
 
+/* A grip holds the end grains. A grain behind them that the skin lists is not glued to the platen,
+ * however wide the skin is. */
+static void a_grip_holds_end_grains_alone(void **state)
+{
+    struct fixture *f = *state;
+    const char *const grips[] = {"kind: tension; loading: fixed; rate: 1e-7 1/s; grip: axial",
+                                 "kind: tension; loading: fixed; rate: 1e-7 1/s; grip: full"};
+    fixture_grid(f, 3, 3, 4, 0.01, 0.7);
+    for (int i = 0; i < 2; i++) {
+        double force[2];
+        struct brc_sim wide;
+        fixture_sim(f, brc_registry_find("vgcm"), elastic, grips[i], "");
+        fixture_steps(f, 50);
+        struct brc_run_params run = f->sim.run;
+        run.skin = 3;
+        CHECK_OK(&f->ctx, brc_sim_create(&f->ctx, &wide, &f->sim.model, f->sim.params, &f->specimen,
+                                         &f->sim.rig.params, &run));
+        for (int k = 0; k < 50; k++)
+            CHECK_OK(&f->ctx, brc_sim_step(&wide));
+        assert_true(wide.platens.n > f->sim.platens.n);
+        force[0] = f->sim.rig.force;
+        force[1] = wide.rig.force;
+        brc_sim_free(&wide);
+        CHECK_NEAR(force[1], force[0], 0, 0.1); /* masses differ, and so does the start */
+    }
+}
+
 static void check_test(struct fixture *f, const char *settings, const char *message)
 {
     struct brc_test_params test;
@@ -155,6 +182,7 @@ int main(void)
         FIXTURE_TEST(without_a_row_nothing_is_measured),
         FIXTURE_TEST(moduli_need_a_gauge),
         FIXTURE_TEST(a_test_ends_at_no_drop),
+        FIXTURE_TEST(a_grip_holds_end_grains_alone),
         FIXTURE_TEST(platens_that_meet_end_the_run),
         FIXTURE_TEST(keys_that_bound_each_other_are_in_order),
     };
