@@ -288,10 +288,12 @@ static int set_triple(struct brc_context *ctx, const struct brc_param *p, void *
     double real[3];
     int whole[3];
     const char *c = text;
+    int n_commas = 0;
+    for (const char *at = text; *at; at++)
+        n_commas += *at == ',';
     for (int i = 0; i < 3; i++) {
         size_t n = strcspn(c, ",");
-        bool last = c[n] == '\0';
-        if (last != (i == 2) || !trimmed(c, n, part, sizeof part))
+        if (n_commas != 2 || !trimmed(c, n, part, sizeof part))
             BRC_FAIL(
                 ctx, BRC_ERR_INPUT,
                 "%s: '%.60s' must be three values between commas, as in %s; numbers have a decimal "

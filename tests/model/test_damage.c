@@ -151,7 +151,7 @@ static void test_frame(void **state)
     static const char *const kind[] = {"grains", "bonds", "contacts"};
     for (int k = 0; k < 3; k++) {
         struct target t;
-        snprintf(path, sizeof path, "%s/frames/%s_00000.hdf", dir, kind[k]);
+        snprintf(path, sizeof path, "%s/frames/%s_%05d.hdf", dir, kind[k], (int)f->sim.step);
         CHECK_OK(&f->ctx, inform(f, path));
         take_file(&t, path);
         damage(f, &t, false, inform);

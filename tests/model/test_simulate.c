@@ -10,8 +10,8 @@
 static const char case_text[] =
     "breccia: 1\n"
     "specimen: {shape: box, grains: grid, size: [30 mm, 30 mm, 40 mm], cells: [3, 3, 4],\n"
-    "           jitter: 0.5, cache: off}\n"
-    "test: {kind: compression, loading: fixed, rate: 4e-6 1/s, strain_max: 0.01}\n"
+    "           jitter: 0.5}\n"
+    "test: {kind: compression, loading: fixed, rate: 4e-6 1/s, strain_max: 0.03}\n"
     "run: {regime: quasi_static, checkpoint_steps: 0}\n";
 
 struct place {
@@ -122,7 +122,7 @@ static void assignments_are_exact(void **state)
         assert_int_equal(strncmp(text, i ? "m.b=" : "m.a=", 4), 0);
     }
     CHECK_FAILS(&ctx, calib_assignment(&ctx, &trial, 2, list, text, sizeof text), BRC_ERR_INPUT,
-                "m.c is no quantity of the model");
+                "m.c is not a quantity of the model");
 }
 
 int main(void)

@@ -428,7 +428,7 @@ static void sizes_are_bounded(void **state)
     free(text);
     char many[512] = "breccia: 1\nmodels: [";
     for (int i = 0; i <= BRC_CASE_MAX_MODELS; i++)
-        strcat(many, i ? ", m" : "m");
+        sprintf(many + strlen(many), "%sm%d", i ? ", " : "", i);
     check_bad(strcat(many, "]\n"), "c.yaml: models: more than 16 names");
 }
 

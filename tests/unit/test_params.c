@@ -88,7 +88,7 @@ static void bad_quantities_are_named(void **state)
         {"3 4 m", "m", "'4 m' is not a unit"},
         {"3 m^0.5", "m", "'m^0.5' is not a unit"},
         {"3 m @ 5", "m", "'m @ 5' is not a unit"},
-        {"3,5 MPa", "Pa", "',5 MPa' is not a unit"},
+        {"3,5 MPa", "Pa", "decimal comma; write a decimal point, '3.5 MPa'"},
         {"20 degC", "K", "the unit 'degC' is not a plain multiple of K"},
         {"3 s since 2000-01-01", "s", "s since 2000-01-01' is not a"},
         {"GPa", "Pa", "here: 'GPa' does not start with a finite decimal number"},
