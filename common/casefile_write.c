@@ -53,8 +53,8 @@ static char *quote(struct brc_context *ctx, const char *value)
     for (const char *c = value; *c;) {
         const char *escaped = escape(c);
         size_t n = escaped ? strlen(escaped) : 1;
-        memcpy(at, escaped ? escaped : c, n);
-        at += n;
+        for (size_t i = 0; i < n; i++)
+            *at++ = escaped ? escaped[i] : c[i];
         c += escaped && (unsigned char)*c >= 0x80 ? 3 : 1;
     }
     strcpy(at, "\"");
@@ -119,6 +119,8 @@ static int add_to_section(struct brc_context *ctx, struct brc_case *c, const cha
         BRC_TRY(append(ctx, c, &c->root, section, "{}"));
         place = brc_case_find_section(c, section);
     }
+    if (!place)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "the section %s was added, but is not found", section);
     return append(ctx, c, place, key, value);
 }
 
