@@ -124,15 +124,9 @@ static double stiffness_bound(const struct brc_sim *sim)
     return bound;
 }
 
-/* Dynamic regime: keeps dt below the stable limit of the springs that act, or may soon (is_listed:
- * the candidates are new). */
-static int update_dt(struct brc_sim *sim, bool is_listed)
+/* Dynamic regime: the step that goes with the limit. */
+static int choose_dt(struct brc_sim *sim)
 {
-    double bound = stiffness_bound(sim);
-    if (!is_listed && bound <= LIMIT_GROWTH * sim->stiffness_bound)
-        return 0;
-    sim->stiffness_bound = fmax(bound, sim->stiffness_bound);
-    BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
     if (sim->run.dt > sim->dt_limit)
         BRC_FAIL(
             sim->ctx, BRC_ERR_INPUT,
@@ -147,6 +141,18 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
     else if (sim->dt == 0 || sim->dt > sim->run.dt_margin * sim->dt_limit)
         sim->dt = sim->run.dt_margin * sim->dt_limit;
     return 0;
+}
+
+/* Dynamic regime: keeps dt below the stable limit of the springs that act, or may soon (is_listed:
+ * the candidates are new). */
+static int update_dt(struct brc_sim *sim, bool is_listed)
+{
+    double bound = stiffness_bound(sim);
+    if (!is_listed && bound <= LIMIT_GROWTH * sim->stiffness_bound)
+        return choose_dt(sim);
+    sim->stiffness_bound = fmax(bound, sim->stiffness_bound);
+    BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
+    return choose_dt(sim);
 }
 
 /* Quasi-static regime: masses grow with the stiffness. Those below what is safe for every network
@@ -181,7 +187,7 @@ static int follow_stiffness(struct brc_sim *sim, bool is_listed)
     bool is_same =
         sim->pairs.k_version == sim->k_seen[0] && sim->platens.k_version == sim->k_seen[1];
     if (is_same && !is_listed)
-        return 0;
+        return sim->run.regime == BRC_DYNAMIC ? choose_dt(sim) : 0;
     sim->k_seen[0] = sim->pairs.k_version;
     sim->k_seen[1] = sim->platens.k_version;
     if (sim->run.regime == BRC_DYNAMIC)
@@ -240,6 +246,7 @@ static int build(struct brc_sim *sim, const struct brc_test_params *test)
 static int start(struct brc_sim *sim)
 {
     double stored[3];
+    sim->dt_limit = sim->run.regime == BRC_QUASI_STATIC ? 0 : HUGE_VAL;
     brc_sim_forces(sim);
     sim->ledger = (struct brc_ledger){0};
     sim->dt = sim->run.regime == BRC_QUASI_STATIC ? 1 : 0;

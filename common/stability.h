@@ -11,7 +11,7 @@ struct brc_spring {
     int32_t a, b;
     double ra[3], rb[3], n[3];
     double kn, ks, kt;
-    bool is_near; /* does not act yet, but may in the next step */
+    bool is_near; /* may act in the next step: those of a pair follow each other */
 };
 
 struct brc_springs {
@@ -25,8 +25,12 @@ int brc_springs_add(struct brc_context *ctx, struct brc_springs *s,
 void brc_springs_free(struct brc_springs *s);
 
 /* Largest stable step 2/omega_max [s] for the masses in use: of all springs that act together, and
- * of each that is near with its two bodies alone; local damping alpha lowers it by sqrt(1 + alpha).
- * HUGE_VAL when nothing is stiff. */
+ * of those that are near between two bodies, which may close at once, with the two alone; local
+ * damping alpha lowers it by sqrt(1 + alpha). HUGE_VAL when nothing is stiff. */
 int brc_stability_limit(struct brc_sim *sim, double *dt_limit);
+/* Dynamic regime, for models that look closer at a pair between two estimates: lowers
+ * sim->dt_limit to what the given springs, all between the same two bodies, need alone. Their
+ * numbers of bodies are lost. */
+int brc_stability_foresee(struct brc_sim *sim, struct brc_springs *springs);
 
 #endif

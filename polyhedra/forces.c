@@ -185,8 +185,11 @@ static int prepare_row(struct poly_block *block, int32_t i)
     struct poly_row_group *g = &block->group[i / BRC_LANES];
     size_t row = (size_t)block->row[i];
     int lane = i % BRC_LANES;
-    if (block->listed[i] ? rows->room[row] <= 0 : poly_is_awake(sim, c, row))
+    if (block->listed[i] ? rows->room[row] <= 0 : poly_is_awake(sim, c, row)) {
         BRC_TRY(poly_list_row(sim, block->st, row));
+        if (c->status[row] != BRC_INTACT)
+            BRC_TRY(poly_foresee(sim, block->st, row, false));
+    }
     block->listed[i] = c->np[row] > 0;
     g->gap[lane] =
         rows->wake[row] - sim->bodies.travel[block->a[i]] - sim->bodies.travel[block->b[i]];

@@ -84,6 +84,7 @@ static void release(void *state)
         return;
     poly_shapes_free(&st->shapes);
     poly_list_free(&st->list);
+    brc_springs_free(&st->ahead);
     free(st->eroded);
     free(st->world);
     free(st->plane);

@@ -14,6 +14,8 @@
 
 /* Skin of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
 #define POLY_LIST_SKIN 0.2
+/* The same of the vertices listed for a platen. */
+#define POLY_WALL_SKIN 0.05
 
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
@@ -158,11 +160,12 @@ struct poly_state {
     struct poly_shapes shapes;
     double (*eroded)[2]; /* m2, of each facet of the specimen: what either grain's core keeps */
     /* derived from the poses at each use */
-    double (*world)[3];    /* vertices of all cores in space */
-    double (*plane)[4];    /* planes of all faces in space: outward normal n, and n . x */
-    double (*turn)[3][3];  /* rotation matrix of each body, platens included */
-    struct poly_list list; /* work space */
-    size_t n_removed;      /* facets that erosion removes on either side */
+    double (*world)[3];       /* vertices of all cores in space */
+    double (*plane)[4];       /* planes of all faces in space: outward normal n, and n . x */
+    double (*turn)[3][3];     /* rotation matrix of each body, platens included */
+    struct poly_list list;    /* work space */
+    struct brc_springs ahead; /* work space of poly_foresee */
+    size_t n_removed;         /* facets that erosion removes on either side */
     size_t n_bonds;
     double mean_area, mean_length; /* of the bonds */
     bool is_scaled;                /* K_n follows from kn_modulus */
@@ -248,6 +251,8 @@ void poly_hold_law(struct poly_bond_result *r, const struct brc_sim *sim,
 /* state.c: stored energy and springs, from state alone. */
 void poly_energy(const struct brc_sim *sim, const void *state, double stored[3]);
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
+/* Dynamic regime: the step bears that all listed features of a row close at once. */
+int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_wall);
 
 /* Two bodies as the feature functions want them; after poly_world. */
 void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct poly_state *st,

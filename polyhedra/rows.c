@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Skin of the platens' lists, in radii R. */
-static const double WALL_SKIN = 0.05;
 /* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
 static const double PLATEN_TOLERANCE = 1e-6;
 
@@ -372,7 +370,7 @@ int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
     struct poly_rows *rows = c->model_columns;
     size_t a = (size_t)c->a[row], first = st->shapes.vertex_first[a];
     size_t n = st->shapes.vertex_first[a + 1] - first;
-    double radius = poly_params_of(sim)->radius, reach = (1 + WALL_SKIN) * radius;
+    double radius = poly_params_of(sim)->radius, reach = (1 + POLY_WALL_SKIN) * radius;
     double allowance = HUGE_VAL;
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
     st->list.n = 0;

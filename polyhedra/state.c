@@ -2,6 +2,9 @@
 /* Energy and linearised springs of the present state. */
 #include "step.h"
 
+/* Faces that are bonded are this near to each other, in radii R. */
+static const double FACE_SKIN = 1e-3;
+
 static bool bond_of_row(struct poly_bond_result *r, struct poly_bond *bond,
                         const struct brc_sim *sim, const struct poly_state *st, size_t row)
 {
@@ -15,14 +18,15 @@ static bool bond_of_row(struct poly_bond_result *r, struct poly_bond *bond,
     return true;
 }
 
+/* Also of what would touch if the radius were larger by `skin`. */
 static bool touch_of_wall(struct poly_touch *t, const struct brc_sim *sim,
-                          const struct poly_state *st, size_t row, size_t p)
+                          const struct poly_state *st, size_t row, size_t p, double skin)
 {
     const struct brc_contacts *c = &sim->platens;
     const struct poly_points *points = c->point_columns;
     size_t v = st->shapes.vertex_first[c->a[row]] + (size_t)points->i[p];
     return poly_touch_platen(t, st->world[v], brc_sim_platen(sim, c->b[row]),
-                             sim->bodies.x[c->b[row]], poly_params_of(sim)->radius);
+                             sim->bodies.x[c->b[row]], poly_params_of(sim)->radius + skin);
 }
 
 /* --- energy ----------------------------------------------------------------------------------- */
@@ -62,7 +66,7 @@ void poly_energy(const struct brc_sim *sim, const void *state, double stored[3])
     for (size_t row = 0; row < c->n; row++) {
         struct poly_touch t;
         for (int32_t k = 0; k < c->np[row]; k++)
-            if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k))
+            if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k, 0))
                 add_point(&s, &t, (size_t)c->p0[row] + (size_t)k);
         if (c->status[row] != BRC_INTACT)
             continue;
@@ -92,17 +96,55 @@ static void add_spring(struct springs *s, int32_t a, int32_t b, const double x[3
 }
 
 static void add_touch(struct springs *s, int32_t a, int32_t b, const struct poly_touch *t,
-                      double mu)
+                      double mu, bool is_near)
 {
-    struct brc_spring spring = {.kn = s->kn * t->weight, .ks = mu > 0 ? s->kt * t->weight : 0};
+    struct brc_spring spring = {
+        .kn = s->kn * t->weight, .ks = mu > 0 ? s->kt * t->weight : 0, .is_near = is_near};
     brc_copy(spring.n, t->n);
     add_spring(s, a, b, t->x, &spring);
 }
 
+/* Those of rows without an intact bond; add_listed has the others. */
 static void add_active_spring(void *user, const struct poly_active *active)
 {
     struct springs *s = user;
-    add_touch(s, active->a, active->b, &active->touch, poly_params_of(s->sim)->mu);
+    if (s->sim->pairs.status[active->row] != BRC_INTACT)
+        add_touch(s, active->a, active->b, &active->touch, poly_params_of(s->sim)->mu, false);
+}
+
+/* Features of a row that may close in the same step, as when faces meet. Their springs are those
+ * that a distance without contact larger by `skin` would give. */
+static void add_listed(struct springs *s, const struct poly_state *st, size_t row, double skin,
+                       bool is_near)
+{
+    const struct poly_params *params = poly_params_of(s->sim);
+    const struct brc_contacts *c = &s->sim->pairs;
+    const struct poly_points *points = c->point_columns;
+    struct poly_pair pair;
+    poly_pair_of(&pair, s->sim, st, c->a[row], c->b[row]);
+    pair.rest += skin;
+    for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
+        struct poly_feature f = poly_point(points, p);
+        struct poly_touch t;
+        uint8_t active = points->active[p];
+        if (poly_touch(&t, &pair, &f, poly_remembered(&f), &active,
+                       (enum poly_rule)params->features))
+            add_touch(s, c->a[row], c->b[row], &t, params->mu, is_near);
+    }
+}
+
+/* The same of the vertices listed for a platen. */
+static void add_listed_wall(struct springs *s, const struct poly_state *st, size_t row,
+                            bool is_near)
+{
+    const struct brc_contacts *c = &s->sim->platens;
+    double mu = brc_sim_platen(s->sim, c->b[row])->friction;
+    double skin = is_near ? POLY_WALL_SKIN * poly_params_of(s->sim)->radius : 0;
+    for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
+        struct poly_touch t;
+        if (touch_of_wall(&t, s->sim, st, row, p, skin))
+            add_touch(s, c->a[row], c->b[row], &t, mu, is_near);
+    }
 }
 
 /* An intact bond counts with its tension stiffness, even while it is closed: it may open within a
@@ -115,26 +157,15 @@ static void add_bond(struct springs *s, int32_t a, int32_t b, const struct poly_
     add_spring(s, a, b, r->x, &spring);
 }
 
-static bool touches(const struct brc_contacts *c, size_t row)
-{
-    const struct poly_points *points = c->point_columns;
-    for (int32_t k = 0; k < c->np[row]; k++)
-        if (points->active[(size_t)c->p0[row] + (size_t)k])
-            return true;
-    return false;
-}
-
-/* A pair that is near without touching may touch in the next step: one contact counts already, at x
- * below the centre of a along n, and as stiff across n as along it, because its true place is
- * beside that line. */
+/* A pair of which nothing is near yet: one contact counts already, at x below the centre of a
+ * along n, and as stiff across n as along it, because its true place is beside that line. */
 static void add_near(struct springs *s, const struct brc_contacts *c, size_t row, const double x[3],
                      const double n[3])
 {
     double k = fmax(s->kn, s->kt);
     struct brc_spring spring = {.kn = k, .ks = k, .is_near = true};
     brc_copy(spring.n, n);
-    if (!touches(c, row))
-        add_spring(s, c->a[row], c->b[row], x, &spring);
+    add_spring(s, c->a[row], c->b[row], x, &spring);
 }
 
 static void add_near_grains(struct springs *s, size_t row)
@@ -160,33 +191,87 @@ static void add_near_platen(struct springs *s, size_t row)
     add_near(s, c, row, x, n);
 }
 
+static struct springs springs_of(const struct brc_sim *sim, struct brc_springs *out)
+{
+    const struct poly_params *p = poly_params_of(sim);
+    return (struct springs){.sim = sim,
+                            .out = out,
+                            .kn = poly_pair_stiffness(p->kn, p->kn),
+                            .kt = poly_pair_stiffness(p->kt, p->kt)};
+}
+
+static bool touches(const struct brc_contacts *c, size_t row)
+{
+    const struct poly_points *points = c->point_columns;
+    for (int32_t k = 0; k < c->np[row]; k++)
+        if (points->active[(size_t)c->p0[row] + (size_t)k])
+            return true;
+    return false;
+}
+
+static void add_near_row(struct springs *s, const struct poly_state *st, size_t row)
+{
+    size_t n = s->out->n;
+    if (touches(&s->sim->pairs, row))
+        return;
+    add_listed(s, st, row, POLY_LIST_SKIN * poly_params_of(s->sim)->radius, true);
+    if (s->out->n == n)
+        add_near_grains(s, row);
+}
+
+/* The faces of a bond touch, but for rounding: all that they have may close with the first load. */
+static void add_row(struct springs *s, const struct poly_state *st, size_t row)
+{
+    const struct brc_contacts *c = &s->sim->pairs;
+    struct poly_bond bond;
+    struct poly_bond_result r;
+    if (!bond_of_row(&r, &bond, s->sim, st, row)) {
+        add_near_row(s, st, row);
+        return;
+    }
+    add_bond(s, c->a[row], c->b[row], &bond, &r);
+    add_listed(s, st, row, FACE_SKIN * poly_params_of(s->sim)->radius, false);
+}
+
+static void add_wall(struct springs *s, const struct poly_state *st, size_t row)
+{
+    const struct brc_contacts *c = &s->sim->platens;
+    struct poly_bond bond;
+    struct poly_bond_result r;
+    add_listed_wall(s, st, row, false);
+    size_t n = s->out->n;
+    if (c->status[row] == BRC_INTACT) {
+        poly_hold_law(&r, s->sim, st, row, &bond);
+        add_bond(s, c->a[row], c->b[row], &bond, &r);
+        return;
+    }
+    add_listed_wall(s, st, row, true);
+    if (s->out->n == n)
+        add_near_platen(s, row);
+}
+
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
 {
     const struct poly_state *st = state;
-    const struct poly_params *p = poly_params_of(sim);
-    struct springs s = {sim, out, poly_pair_stiffness(p->kn, p->kn),
-                        poly_pair_stiffness(p->kt, p->kt), 0};
-    struct poly_bond bond;
-    struct poly_bond_result r;
+    struct springs s = springs_of(sim, out);
     poly_each_active(sim, st, add_active_spring, &s);
     for (size_t row = 0; row < sim->pairs.n; row++)
-        if (bond_of_row(&r, &bond, sim, st, row))
-            add_bond(&s, sim->pairs.a[row], sim->pairs.b[row], &bond, &r);
-        else
-            add_near_grains(&s, row);
-    const struct brc_contacts *c = &sim->platens;
-    for (size_t row = 0; row < c->n; row++) {
-        struct poly_touch t;
-        double mu = brc_sim_platen(sim, c->b[row])->friction;
-        for (int32_t k = 0; k < c->np[row]; k++)
-            if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k))
-                add_touch(&s, c->a[row], c->b[row], &t, mu);
-        if (c->status[row] != BRC_INTACT) {
-            add_near_platen(&s, row);
-            continue;
-        }
-        poly_hold_law(&r, sim, st, row, &bond);
-        add_bond(&s, c->a[row], c->b[row], &bond, &r);
-    }
+        add_row(&s, st, row);
+    for (size_t row = 0; row < sim->platens.n; row++)
+        add_wall(&s, st, row);
     return s.code;
+}
+
+int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_wall)
+{
+    if (sim->run.regime != BRC_DYNAMIC)
+        return 0;
+    struct springs s = springs_of(sim, &st->ahead);
+    st->ahead.n = 0;
+    if (is_wall)
+        add_listed_wall(&s, st, row, true);
+    else if (!touches(&sim->pairs, row))
+        add_listed(&s, st, row, POLY_LIST_SKIN * poly_params_of(sim)->radius, true);
+    BRC_TRY(s.code);
+    return brc_stability_foresee(sim, &st->ahead);
 }

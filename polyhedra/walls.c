@@ -72,7 +72,8 @@ void poly_walls(struct brc_sim *sim, void *state)
     bool viscous = BRC_OPTION(poly_is_viscous(sim));
     const struct poly_rows *rows = c->model_columns;
     for (size_t row = 0; row < c->n; row++) {
-        if (poly_is_awake(sim, c, row) && poly_list_wall(sim, st, row) != 0)
+        if (poly_is_awake(sim, c, row) &&
+            (poly_list_wall(sim, st, row) != 0 || poly_foresee(sim, st, row, true) != 0))
             return;
         if (poly_is_idle(c, row))
             continue;

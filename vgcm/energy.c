@@ -102,7 +102,7 @@ double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *l
 }
 
 /* Springs of all points of a facet, those that are broken and open included, as they may close
- * again; those of a sphere contact while it touches. */
+ * again; that of a sphere contact is near while it does not touch. */
 static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                      struct brc_springs *out)
 {
@@ -110,12 +110,10 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     const struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
     struct vgcm_motion m;
-    if (c->k[i][0] == 0)
-        return 0;
     int32_t row = (int32_t)i;
     const struct vgcm_rows rows = {.at = {row, row, row, row}};
     vgcm_motion_of(&sim->bodies, c, &rows, 0, &m);
-    struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
+    struct brc_spring spring = {.a = c->a[i], .b = c->b[i], .is_near = c->k[i][0] == 0};
     double s[3], t[3];
     brc_set(spring.n, m.n[0][0], m.n[1][0], m.n[2][0]);
     brc_set(s, m.s[0][0], m.s[1][0], m.s[2][0]);

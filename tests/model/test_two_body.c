@@ -408,6 +408,55 @@ static void the_step_meets_an_impact(void **state)
     CHECK_BETWEEN(f->sim.dt, 0.2 * limit, 0.51 * limit);
 }
 
+/* Two cubes GAP apart meet with whole faces. */
+static void build_cubes(struct fixture *f, const char *settings, const char *run)
+{
+    struct brc_convex cell[2];
+    char all[256];
+    for (int i = 0; i < 2; i++) {
+        brc_convex_init(&cell[i]);
+        fixture_box(f, &cell[i], (double[3]){i * (1e-2 + GAP), 0, 0},
+                    (double[3]){1e-2, 1e-2, 1e-2});
+    }
+    fixture_loose(f, cell, NULL, 2);
+    for (int i = 0; i < 2; i++)
+        brc_convex_free(&cell[i]);
+    snprintf(all, sizeof all, "radius: 1 mm; kn: 1e6 N/m; kt: 1e6 N/m; gn: 0 1/s; %s", settings);
+    fixture_free_sim(f, poly(), all, run);
+}
+
+/* Kinetic energy after they have met, over that before. */
+static double energy_of_cubes(struct fixture *f, const char *settings, const char *run)
+{
+    build_cubes(f, settings, run);
+    throw_at(f, (double[3]){-0.5, 0, 0});
+    double before = fixture_kinetic(f);
+    double duration = BRC_PI * sqrt(effective_mass(f) / K);
+    int n = (int)ceil((GAP / 0.5 + 3 * duration) / f->sim.dt);
+    for (int i = 0; i < 3 * n; i++)
+        fixture_steps(f, 1);
+    assert_true(fixture_largest_force(f) == 0);
+    return fixture_kinetic(f) / before;
+}
+
+/* All springs of two faces close at once. The step bears them before they do. */
+static void the_step_meets_whole_faces(void **state)
+{
+    static const char *const rules[] = {"merged", "closed"};
+    struct fixture *f = *state;
+    for (int friction = 0; friction < 2; friction++)
+        for (int k = 0; k < 2; k++) {
+            char settings[80];
+            snprintf(settings, sizeof settings, "mu: %d; features: %s", friction, rules[k]);
+            double energy = energy_of_cubes(f, settings, "");
+            double fine = energy_of_cubes(f, settings, "dt_margin: 0.05");
+            print_message("%s: kinetic energy %.4f of that before, %.4f at a tenth of the step\n",
+                          settings, energy, fine);
+            CHECK_NEAR(energy, 1, 0.1, 0);
+            CHECK_NEAR(fine, 1, 0.005, 0);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -423,6 +472,7 @@ int main(void)
         FIXTURE_TEST(vgcm_cell_on_a_platen),
         FIXTURE_TEST(an_open_platen_does_not_pull),
         FIXTURE_TEST(the_step_meets_an_impact),
+        FIXTURE_TEST(the_step_meets_whole_faces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
