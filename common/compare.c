@@ -105,13 +105,14 @@ static int run_all(struct compare *c)
     return 0;
 }
 
-/* The first failure counts; an interruption counts less than a failure. */
+/* The first failure counts; an interruption counts less than a failure. Runs whose energy does not
+ * add up have results to show. */
 static int judge(struct compare *c)
 {
     const struct brc_child *worst = NULL;
     for (int i = 0; i < c->n; i++) {
         const struct brc_child *child = &c->child[i];
-        if (child->outcome.code == 0)
+        if (child->outcome.code == 0 || child->outcome.code == BRC_ERR_ENERGY)
             continue;
         if (!worst || (worst->outcome.code == BRC_ERR_INTERRUPTED &&
                        child->outcome.code != BRC_ERR_INTERRUPTED))
@@ -122,6 +123,14 @@ static int judge(struct compare *c)
     if (worst || c->n_started < c->n)
         BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; the states are saved in %s",
                  c->order->dir);
+    return 0;
+}
+
+static int judge_energy(const struct compare *c)
+{
+    for (int i = 0; i < c->n; i++)
+        if (c->child[i].outcome.code == BRC_ERR_ENERGY)
+            BRC_FAIL(c->ctx, BRC_ERR_ENERGY, "%.1000s", c->child[i].outcome.message);
     return 0;
 }
 
@@ -205,6 +214,8 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
         code = write_table(c);
     if (code == 0)
         code = draw(c);
+    if (code == 0)
+        code = judge_energy(c);
     free(c);
     return code;
 }

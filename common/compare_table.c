@@ -138,6 +138,13 @@ static void put_notes(FILE *out, const struct brc_summary *s)
     }
 }
 
+static void put_energy(FILE *out, const struct brc_summary *s)
+{
+    char text[512];
+    if (*brc_output_energy(s, text, sizeof text))
+        fprintf(out, "%s\n", text);
+}
+
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n)
 {
     fprintf(out, "%s\n", *summary[0]->title ? summary[0]->title : summary[0]->case_name);
@@ -156,5 +163,6 @@ void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int 
     for (int i = 0; i < n; i++) {
         put_end(out, summary[i]);
         put_notes(out, summary[i]);
+        put_energy(out, summary[i]);
     }
 }

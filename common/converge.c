@@ -212,8 +212,8 @@ static int take_outcome(struct ladder *l, int slot)
     struct task *t = &l->task[slot];
     const struct brc_outcome *o = &l->child[slot].outcome;
     struct brc_converge_run *run = &t->setting->run[t->seed];
-    bool is_spoilt =
-        o->code == BRC_ERR_BLOWUP || o->code == BRC_ERR_INPUT || o->code == BRC_ERR_GEOMETRY;
+    bool is_spoilt = o->code == BRC_ERR_BLOWUP || o->code == BRC_ERR_ENERGY ||
+                     o->code == BRC_ERR_INPUT || o->code == BRC_ERR_GEOMETRY;
     if (o->code != 0 && !is_spoilt)
         BRC_FAIL(l->ctx, o->code, "%s: %.900s", t->model->model->name, o->message);
     run->steps = o->summary.steps;

@@ -17,7 +17,8 @@
     X(BRC_ERR_IO, -5, 4, "input or output failed")             \
     X(BRC_ERR_MEMORY, -6, 5, "out of memory")                  \
     X(BRC_ERR_BLOWUP, -7, 6, "the simulation became unstable") \
-    X(BRC_ERR_INTERRUPTED, -8, 7, "interrupted")
+    X(BRC_ERR_INTERRUPTED, -8, 7, "interrupted")               \
+    X(BRC_ERR_ENERGY, -9, 8, "the energy does not add up; results are kept")
 
 enum brc_error_code {
 #define BRC_ERROR_ENUM(name, code, status, text) name = (code),

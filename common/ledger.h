@@ -33,6 +33,17 @@ struct brc_ledger {
 
 /* Sum of all terms with their signs, less the start; 0 when nothing is lost [J]. */
 double brc_ledger_imbalance(const struct brc_ledger *l);
+/* How far a run's energy can be trusted, by the larger one of residual and drift. */
+enum brc_energy_check { BRC_ENERGY_OFF, BRC_ENERGY_GOOD, BRC_ENERGY_DOUBTFUL, BRC_ENERGY_WRONG };
+#define BRC_ENERGY_CHECKS                  \
+    {                                      \
+        "off", "good", "doubtful", "wrong" \
+    }
+/* Parts of the work from which a run is doubtful, and from which it is wrong: docs/numerics.md
+ * says where sound runs lie. */
+#define BRC_ENERGY_DOUBT 0.03
+#define BRC_ENERGY_ERROR 0.2
+
 /* |imbalance| / (|boundary work| + |work of gravity| + energy at the start); 1 when those are 0 and
  * the imbalance is not. */
 double brc_ledger_residual(const struct brc_ledger *l);
@@ -40,5 +51,9 @@ double brc_ledger_residual(const struct brc_ledger *l);
  * which the imbalance is blind, because a force's work over a step is taken by the trapezoid rule
  * that the integrator itself follows. */
 double brc_ledger_drift(const struct brc_ledger *l, const double stored[3]);
+/* The same judged; energies below `noise` [J] are rounding. Values that are no numbers are wrong.
+ */
+enum brc_energy_check brc_ledger_check(const struct brc_ledger *l, const double stored[3],
+                                       double noise);
 
 #endif

@@ -383,7 +383,7 @@ static int run_job(struct brc_context *ctx, const struct options *o, const struc
         code = brc_run(ctx, &order, &summary);
         brc_progress_end(&progress);
     }
-    if (code == 0)
+    if (code == 0 || code == BRC_ERR_ENERGY)
         print_summary(&summary, dir);
     brc_specimen_free(&specimen);
     return code;

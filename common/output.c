@@ -116,6 +116,7 @@ static void json_frames(FILE *out, const struct brc_summary *s)
 
 int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s)
 {
+    static const char *const checks[] = BRC_ENERGY_CHECKS;
     struct draft d;
     BRC_TRY(open_draft(ctx, &d, path));
     FILE *out = d.file;
@@ -140,11 +141,30 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
     json_number_entry(out, "ns_per_contact_step", s->ns_per_contact_step);
     json_number_entry(out, "energy_residual", s->energy_residual);
     json_number_entry(out, "energy_drift", s->energy_drift);
+    json_text_entry(out, "energy_check", checks[s->energy_check]);
     json_number_entry(out, "unbalanced_max", s->unbalanced_max);
     fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
     json_results(out, s);
     fputs("}\n", out);
     return close_draft(ctx, &d);
+}
+
+const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size)
+{
+    bool is_drift = s->energy_drift > s->energy_residual, is_wrong;
+    is_wrong = s->energy_check == BRC_ENERGY_WRONG;
+    *text = '\0';
+    if (is_wrong || s->energy_check == BRC_ENERGY_DOUBTFUL)
+        snprintf(text, size,
+                 "%s: energy %s of %.3g of the work (above %g %s): take a smaller step "
+                 "(run.mass_margin higher, dynamic: run.dt_margin lower), load more slowly "
+                 "(test.target, test.rate) or, for polyhedra, raise polyhedra.radius "
+                 "or choose features: merged",
+                 s->model, is_drift ? "drift" : "residual",
+                 is_drift ? s->energy_drift : s->energy_residual,
+                 is_wrong ? BRC_ENERGY_ERROR : BRC_ENERGY_DOUBT,
+                 is_wrong ? "the results are wrong" : "the results are doubtful");
+    return text;
 }
 
 const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name)

@@ -4,6 +4,7 @@
 #define BRC_OUTPUT_H
 
 #include "fields.h"
+#include "ledger.h"
 #include "params.h"
 
 #include <stdio.h>
@@ -68,6 +69,7 @@ struct brc_summary {
     double cpu_s, wall_s;       /* of the step loop, all parts of a resumed run together */
     double ns_per_contact_step; /* cpu_s over steps and n_contacts_mean */
     double energy_residual, energy_drift, unbalanced_max;
+    enum brc_energy_check energy_check;
     uint64_t state_hash;
     int n_results;
     struct brc_summary_value results[BRC_SUMMARY_MAX_RESULTS];
@@ -75,6 +77,8 @@ struct brc_summary {
 
 /* summary.json; numbers have 17 digits, what is no number is null. Written beside and renamed. */
 int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s);
+/* One sentence on the energy of a run that is doubtful or wrong, "" on others; returns text. */
+const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size);
 /* A result by name, NULL when the test has none of that name. */
 const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name);
 /* A text as one field of a CSV file, by RFC 4180: in quotes where it holds commas, quotes or line

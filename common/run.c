@@ -336,6 +336,18 @@ static int check_results(const struct run *r, const struct brc_summary *s)
     return check_finite(r->ctx, "energy_drift", s->energy_drift);
 }
 
+/* Energies that rounding alone makes: of all springs stretched by this part of the skin. */
+static double rounding_energy(const struct brc_sim *sim)
+{
+    static const double PART = 1e-8;
+    double stiffness = 0;
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        stiffness += sim->pairs.k[i][0];
+    for (size_t i = 0; i < sim->platens.n; i++)
+        stiffness += sim->platens.k[i][0];
+    return stiffness * PART * PART * sim->skin * sim->skin;
+}
+
 static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
@@ -357,6 +369,9 @@ static int measure(const struct run *r, struct brc_summary *s)
         .wall_s = r->counts.wall_s,
         .energy_residual = sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
         .energy_drift = sim->run.ledger ? brc_ledger_drift(&sim->ledger, stored) : NAN,
+        .energy_check = sim->run.ledger
+                            ? brc_ledger_check(&sim->ledger, stored, rounding_energy(sim))
+                            : BRC_ENERGY_OFF,
         .unbalanced_max = brc_rig_unbalanced_max(sim),
         .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
@@ -407,7 +422,7 @@ static int draw(struct run *r)
 
 static int write_results(struct run *r, struct brc_summary *out)
 {
-    char path[PATH_SIZE];
+    char path[PATH_SIZE], energy[512];
     BRC_TRY(measure(r, out));
     BRC_TRY(write_tables(r));
     BRC_TRY(in_folder(r->ctx, r->order->dir, "summary.json", path));
@@ -415,6 +430,8 @@ static int write_results(struct run *r, struct brc_summary *out)
     for (int i = 0; i < out->n_results; i++)
         if (out->results[i].note)
             note(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
+    if (*brc_output_energy(out, energy, sizeof energy))
+        note(r, "%s", energy);
     note(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by, out->steps,
          out->state_hash);
     return draw(r);
@@ -482,6 +499,18 @@ static void keep_traces(struct run *r)
     r->ctx = ctx;
 }
 
+/* Results are there whatever the energy says. */
+static int judge_energy(const struct run *r, const struct brc_summary *s)
+{
+    char text[512];
+    brc_output_energy(s, text, sizeof text);
+    if (s->energy_check == BRC_ENERGY_WRONG && strcmp(r->ended_by, "signal") != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_ENERGY, "%s; results are in %s", text, r->order->dir);
+    if (*text)
+        brc_log(r->ctx, "warning: %s", text);
+    return 0;
+}
+
 int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out)
 {
     struct run r = {.ctx = ctx, .order = order};
@@ -497,6 +526,8 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
             code = write_results(&r, out);
         report(&r, true);
     }
+    if (code == 0)
+        code = judge_energy(&r, out);
     if (code == 0 && strcmp(r.ended_by, "signal") == 0)
         code = brc_error_set(ctx, BRC_ERR_INTERRUPTED, __FILE__, __LINE__,
                              "interrupted at step %" PRId64 "; the state is saved in %s",

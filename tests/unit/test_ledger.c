@@ -46,12 +46,38 @@ static void residual_is_relative_to_boundary_work(void **state)
     assert_true(brc_ledger_residual(&l) > 0.5);
 }
 
+static enum brc_energy_check check_of(double work, double lost, double moved, double noise)
+{
+    const double stored[3] = {0.25 * work, 0.25 * work, 0.5 * work - lost - moved};
+    const struct brc_ledger l = {.boundary = work, .bond = work - lost};
+    return brc_ledger_check(&l, stored, noise);
+}
+
+/* Whichever is larger counts, of either sign; what rounding makes of no work does not. */
+static void energy_is_judged(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        assert_int_equal(check_of(50, sign * 1.4, 0, 0), BRC_ENERGY_GOOD);
+        assert_int_equal(check_of(50, sign * 1.6, 0, 0), BRC_ENERGY_DOUBTFUL);
+        assert_int_equal(check_of(50, 0, sign * 1.6, 0), BRC_ENERGY_DOUBTFUL);
+        assert_int_equal(check_of(50, sign * 9.9, 0, 0), BRC_ENERGY_DOUBTFUL);
+        assert_int_equal(check_of(50, sign * 10.1, 0, 0), BRC_ENERGY_WRONG);
+        assert_int_equal(check_of(50, 0, sign * 10.1, 0), BRC_ENERGY_WRONG);
+        assert_int_equal(check_of(0, sign * 1e-20, 0, 1e-19), BRC_ENERGY_GOOD);
+        assert_int_equal(check_of(0, sign * 1e-18, 0, 1e-19), BRC_ENERGY_WRONG);
+    }
+    assert_int_equal(check_of(50, NAN, 0, 0), BRC_ENERGY_WRONG);
+    assert_int_equal(check_of(0, 0, 0, 0), BRC_ENERGY_GOOD);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(balance_by_hand),
         cmocka_unit_test(every_term_counts_with_its_sign),
         cmocka_unit_test(residual_is_relative_to_boundary_work),
+        cmocka_unit_test(energy_is_judged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
