@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files that a case names, and the case that a run keeps. */
-#define _XOPEN_SOURCE 700 /* realpath */
+#define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): glibc has realpath so */
 
 #include "job.h"
 
@@ -63,11 +63,10 @@ int brc_job_find_files(struct brc_context *ctx, struct brc_job *job)
  * is no such folder. */
 static char *folder_of(struct brc_context *ctx, const char *name)
 {
-    size_t n = strlen(name);
-    char *folder = brc_alloc(ctx, n + 2, 1);
+    char *folder = brc_alloc(ctx, strlen(name) + 2, 1);
     if (!folder)
         return NULL;
-    memcpy(folder, name, n);
+    strcpy(folder, name);
     char *slash = strrchr(folder, '/');
     strcpy(slash ? slash + 1 : folder, ".");
     char *real = realpath(folder, NULL);

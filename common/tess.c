@@ -77,9 +77,10 @@ static int name_missing(struct brc_context *ctx, const struct work *w)
     const double *radius = w->radius;
     for (size_t i = 0; i < w->n; i++) {
         int32_t j = w->hider[i];
-        double x[3];
+        double x[3], apart[3];
         brc_add(x, w->seed[i], w->origin);
-        if (j >= 0 && memcmp(w->seed[i], w->seed[j], sizeof x) == 0)
+        brc_sub(apart, w->seed[i], w->seed[j >= 0 ? (size_t)j : i]);
+        if (j >= 0 && brc_norm2(apart) == 0)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                      "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
                      x[1], x[2]);
