@@ -114,7 +114,9 @@ static int append(struct brc_context *ctx, struct brc_case *c, const struct brc_
 static int add_to_section(struct brc_context *ctx, struct brc_case *c, const char *section,
                           const char *key, const char *value)
 {
-    const struct brc_case_place *place = *section ? brc_case_find_section(c, section) : &c->root;
+    if (!*section)
+        return append(ctx, c, &c->root, key, value);
+    const struct brc_case_place *place = brc_case_find_section(c, section);
     if (!place) {
         BRC_TRY(append(ctx, c, &c->root, section, "{}"));
         place = brc_case_find_section(c, section);
