@@ -94,8 +94,82 @@ refused "specimen.tess: cannot read 'absent.tess'" wrong.yaml
 case_file wrong 'shape: polyhedron, grains: tess, tess: wrong.tess'
 head -c 20000 box.tess >wrong.tess
 refused "wrong.tess:" wrong.yaml
-sed 's/^   3 standard/   2 standard/' box.tess >wrong.tess
-refused "wrong.tess:5: expected a whole number" wrong.yaml
+# kinds of file that are not read are named
+cat >wrong.tess <<'END'
+***tess
+ **format
+   3.5
+ **general
+   2 standard
+ **cell
+  2
+ **vertex
+ 6
+   1 0 0 0 0
+   2 1 0 0 0
+   3 2 0 0 0
+   4 0 1 0 0
+   5 1 1 0 0
+   6 2 1 0 0
+ **edge
+ 7
+   1 1 2 0
+   2 2 5 0
+   3 5 4 0
+   4 4 1 0
+   5 2 3 0
+   6 3 6 0
+   7 6 5 0
+ **face
+ 2
+   1 4 1 2 5 4
+     4 1 2 3 4
+    0 0 0 1
+     0 -1 0 0 0
+   2 4 2 3 6 5
+     4 5 6 7 -2
+    0 0 0 1
+     0 -1 0 0 0
+***end
+END
+refused "wrong.tess:5: the tessellation is two-dimensional" wrong.yaml
+sed 's/^   3 standard/   3 periodic/' box.tess >wrong.tess
+refused "wrong.tess:5: the tessellation is periodic" wrong.yaml
+sed 's/^   3.4/   1.10/' box.tess >wrong.tess
+refused "wrong.tess:3: this format is not read" wrong.yaml
+sed 's/^\*\*\*tess/***tesr/' box.tess >wrong.tess
+refused "wrong.tess:1: not a tessellation file of Neper" wrong.yaml
+# format 2.0 has the equations of the domain's faces without a type
+case_file again 'shape: polyhedron, grains: tess, tess: box.tess'
+"$breccia" export again.yaml --format tess -o expected.tess || fail "box is not read"
+awk '$1 == "3.4" { print "   2.0"; next } $1 == "plane" { plane = 1; next }
+     plane { plane = 0; $1 = "" } { print }' box.tess >old.tess
+case_file again 'shape: polyhedron, grains: tess, tess: old.tess'
+"$breccia" export again.yaml --format tess -o again.tess 2>said.txt || fail "format 2.0: $(cat said.txt)"
+cmp -s again.tess expected.tess || fail "format 2.0 is read as something else"
+# a cell without faces is left out, and said to be
+awk '$1 == "**cell" { n = NR } n && NR == n + 1 { $1++; last = $1 }
+     $1 == "**vertex" { print "  " last " 0.01 0.01 0.01 0" }
+     $1 == "**polyhedron" { p = NR } p && NR == p + 1 { $1++ }
+     $1 == "**domain" { print "  " last " 0" } { print }' box.tess >empty.tess
+case_file again 'shape: polyhedron, grains: tess, tess: empty.tess'
+"$breccia" export again.yaml --format tess -o again.tess 2>said.txt || fail "empty cell: $(cat said.txt)"
+cmp -s again.tess expected.tess || fail "a file with an empty cell is read as something else"
+grep -q 'empty.tess: 1 of the cells have no faces' said.txt || fail "empty cell: $(cat said.txt)"
+# what is not flat: too few digits, a curved domain, or regularized
+small() {
+    awk -v scale="$1" '$1 == "**vertex" { n = 1 } $1 == "**edge" { n = 0 }
+        n && NF == 5 { printf "%s %.12f %.12f %.12f 0\n", $1, scale * $2, scale * $3, scale * $4; next } { print }' \
+        box.tess
+}
+small 1e-6 >wrong.tess
+refused "specimen.tess_unit" wrong.yaml
+small 1e-3 >small.tess
+case_file again 'shape: polyhedron, grains: tess, tess: small.tess'
+"$breccia" export again.yaml --format tess -o again.tess || fail "eight digits are too few"
+awk '$1 == "**vertex" { n = NR } n && NR == n + 2 { $2 += 0.002; $3 += 0.002; $4 -= 0.003 }
+     { sub("plane$", "cylinder"); print }' box.tess >wrong.tess
+refused "lies on a curved face of the domain" wrong.yaml
 awk '$1 == "**vertex" { n = NR } n && NR == n + 22 { $2 += 0.002 } { print }' box.tess >wrong.tess
 refused "is not flat" wrong.yaml
 awk '$1 == "**polyhedron" { n = NR } n && NR == n + 3 { $3 = $4 } { print }' box.tess >wrong.tess
