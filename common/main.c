@@ -333,6 +333,7 @@ static int make_specimen(struct brc_context *ctx, const struct brc_job *job,
     BRC_TRY(brc_specimen_create(ctx, &job->specimen, specimen));
     brc_log(ctx, "%s: %zu grains, %zu facets", job->name, specimen->facets.n_cells,
             specimen->facets.n_facets);
+    brc_specimen_warn(ctx, specimen);
     return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "seeds.h"
 
 #include "grid.h"
+#include "progress.h"
 #include "vec.h"
 
 #include <gsl/gsl_rng.h>
@@ -23,6 +24,9 @@ static const double STEP = 0.2, FRICTION = 0.3;
  * moves them by less than a thousandth of a radius at six times the cost. */
 static const double REST = 1e-2, LAST_REST = 1e-5;
 static const double SKIN = 0.3; /* of the mean radius */
+/* Largest part of the volume that spheres may fill, as of specimen.solid_fraction; they overlap
+ * then by a tenth of their diameters. */
+static const double MAX_FRACTION = 0.75;
 /* Overlap, in mean radii, that counts as none: a loose packing rests when only such are left. */
 static const double LOOSE = 1e-3;
 
@@ -37,6 +41,7 @@ struct packing {
     int32_t (*near_wall)[2]; /* sphere and plane of the domain */
     size_t n_near_wall, cap_near_wall;
     double contact; /* mean contact force of the last step */
+    struct brc_work work;
 };
 
 static void packing_free(struct packing *p)
@@ -60,20 +65,27 @@ static int choose_count(struct brc_context *ctx, const struct brc_specimen_param
 {
     double mean = BRC_PI / 6 * mean_cube(s->diameter_min, s->diameter_max);
     double count = s->count > 0 ? s->count : floor(s->solid_fraction * domain_volume / mean + 0.5);
+    double most = fmin(floor(MAX_FRACTION * domain_volume / mean), BRC_MAX_GRAINS);
     if (s->diameter_min > s->diameter_max)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "specimen.diameter_min = %g m is larger than specimen.diameter_max = %g m",
                  s->diameter_min, s->diameter_max);
-    if (count < 1)
+    if (count < 1 || most < 1)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                  "no sphere fits: the domain holds %g m3, a sphere takes %g m3; enlarge the "
                  "specimen or lower specimen.diameter_min and diameter_max",
                  domain_volume, mean);
-    if (count > 1e7)
+    if (s->count > most)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%g spheres asked for, at most 1e7 are allowed; raise specimen.diameter_min and "
+                 "specimen.count = %d spheres would fill %.3g of the domain's volume; at most %.0f "
+                 "fit, which fill %g of it: lower specimen.count or specimen.diameter_min and "
+                 "diameter_max, or enlarge the specimen",
+                 s->count, count * mean / domain_volume, most, MAX_FRACTION);
+    if (count > BRC_MAX_GRAINS)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%g spheres asked for, at most %g are allowed; raise specimen.diameter_min and "
                  "diameter_max",
-                 count);
+                 count, (double)BRC_MAX_GRAINS);
     *n = (size_t)count;
     return 0;
 }
@@ -249,15 +261,22 @@ static int check_packing(struct brc_context *ctx, const struct packing *p, doubl
     return 0;
 }
 
+/* How far the relaxation is, by the logarithm of the ratio that it is to bring down. */
+static double part_at_rest(double ratio, double rest)
+{
+    return fmin(fmax(log(ratio) / log(rest), 0), 1);
+}
+
 /* Grows the spheres and relaxes them until they rest, and longer while a cell lacks its centre. */
 static int grow(struct brc_context *ctx, struct packing *p)
 {
-    double ratio = 1, rest = REST;
+    double ratio = 1, rest = REST, done = 0;
     for (int step = 0; step < GROWTH_STEPS; step++) {
         double part = 0.5 + 0.5 * (step + 1) / GROWTH_STEPS;
         for (size_t i = 0; i < p->n; i++)
             p->present[i] = part * p->radius[i];
         BRC_TRY(relax(ctx, p, &ratio));
+        brc_work_update(&p->work, 0.5 * step / GROWTH_STEPS);
     }
     for (int step = 0; step < MAX_RELAX_STEPS && rest >= LAST_REST; step++) {
         if (ratio <= rest && find_swallowed(p) == p->n)
@@ -265,6 +284,8 @@ static int grow(struct brc_context *ctx, struct packing *p)
         if (ratio <= rest)
             rest /= 10;
         BRC_TRY(relax(ctx, p, &ratio));
+        done = fmax(done, part_at_rest(ratio, rest));
+        brc_work_update(&p->work, 0.5 + 0.5 * done);
     }
     return check_packing(ctx, p, ratio);
 }
@@ -289,8 +310,10 @@ int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params 
         gsl_rng_set(rng, (unsigned long)s->seed);
         code = insert(ctx, &p, rng, s);
     }
+    brc_work_begin(&p.work, ctx, "packing");
     if (code == 0)
         code = grow(ctx, &p);
+    brc_work_end(&p.work);
     if (rng)
         gsl_rng_free(rng);
     packing_free(&p);

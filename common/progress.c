@@ -30,12 +30,17 @@ const char *brc_progress_duration(double seconds, char *buffer, size_t size)
     return buffer;
 }
 
+static bool is_terminal(FILE *out)
+{
+    const char *kind = getenv("TERM");
+    return isatty(fileno(out)) && kind && strcmp(kind, "dumb") != 0;
+}
+
 void brc_progress_begin(struct brc_progress *p, FILE *out, const char *const *labels, int n,
                         bool quiet)
 {
-    const char *terminal = getenv("TERM");
     *p = (struct brc_progress){.out = out, .is_quiet = quiet, .pipe = -1, .n = n};
-    p->is_terminal = isatty(fileno(out)) && terminal && strcmp(terminal, "dumb") != 0;
+    p->is_terminal = is_terminal(out);
     p->started = brc_progress_clock();
     /* the first plain line soon, so that a log shows at once that something runs */
     p->last_drawn = p->started + 1 - interval_plain;
@@ -171,4 +176,38 @@ void brc_progress_end(struct brc_progress *p)
         all_ended = all_ended && p->run[i].has_ended;
     if (!all_ended)
         draw(p);
+}
+
+void brc_work_begin(struct brc_work *w, const struct brc_context *ctx, const char *what)
+{
+    *w = (struct brc_work){.ctx = ctx, .what = what, .is_terminal = is_terminal(stderr)};
+    w->started = brc_progress_clock();
+    w->last_drawn = w->started + 1 - (w->is_terminal ? interval_terminal : interval_plain);
+}
+
+void brc_work_update(struct brc_work *w, double fraction)
+{
+    double now = brc_progress_clock();
+    if (w->ctx->quiet ||
+        now - w->last_drawn < (w->is_terminal ? interval_terminal : interval_plain))
+        return;
+    char elapsed[32];
+    brc_progress_duration(now - w->started, elapsed, sizeof elapsed);
+    w->last_drawn = now;
+    if (!w->is_terminal) {
+        brc_log(w->ctx, "%s: %.0f %%, %s", w->what, 100 * fraction, elapsed);
+        return;
+    }
+    fprintf(stderr, "%s%-*s ", w->is_drawn ? "\r" : "", LABEL_WIDTH, w->what);
+    draw_bar(stderr, fraction);
+    fprintf(stderr, "  %s\033[K", elapsed);
+    fflush(stderr);
+    w->is_drawn = true;
+}
+
+void brc_work_end(struct brc_work *w)
+{
+    if (w->is_drawn)
+        fputs("\r\033[K", stderr);
+    w->is_drawn = false;
 }

@@ -46,6 +46,18 @@ bool brc_progress_is_due(const struct brc_progress *p);
 void brc_progress_update(struct brc_progress *p, int run, const struct brc_progress_report *report);
 /* Draws the last state and leaves the lines on the screen. */
 void brc_progress_end(struct brc_progress *p);
+/* Progress of work before a run, whose end is known by a fraction alone: a bar on a terminal that
+ * is wiped at the end, a line every few seconds elsewhere, nothing at all for what is over at once.
+ */
+struct brc_work {
+    const struct brc_context *ctx;
+    const char *what;
+    bool is_terminal, is_drawn;
+    double started, last_drawn; /* s */
+};
+void brc_work_begin(struct brc_work *w, const struct brc_context *ctx, const char *what);
+void brc_work_update(struct brc_work *w, double fraction);
+void brc_work_end(struct brc_work *w);
 /* Seconds of a clock that never goes back. */
 double brc_progress_clock(void);
 /* "1:05", "2:03:04"; returns buffer. */

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "seeds.h"
 
+#include "grid.h"
 #include "numbers.h"
 #include "vec.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
+
+/* Seeds nearer than this part of the grain size (of equal cubes) are one grain cut in two by a bond
+ * that is a thousand times too stiff. */
+static const double least_distance = 1e-3;
 
 void brc_seeds_free(struct brc_seeds *s)
 {
@@ -14,15 +19,41 @@ void brc_seeds_free(struct brc_seeds *s)
     *s = (struct brc_seeds){0};
 }
 
+/* No two seeds are too near to each other; a line of the file that each of them stands in, or NULL.
+ */
+static int check_near(struct brc_context *ctx, const struct brc_seeds *s, double size,
+                      const char *key, const int *line)
+{
+    struct brc_candidates near = {0};
+    double *reach = brc_alloc(ctx, s->n, sizeof *reach), least = least_distance * size, d[3];
+    int code = reach ? 0 : BRC_ERR_MEMORY;
+    if (code == 0)
+        code = brc_grid_pairs(ctx, (const double(*)[3])s->x, reach, s->n, least, &near);
+    if (code == 0 && near.n > 0) {
+        int32_t a = near.pair[0][0], b = near.pair[0][1];
+        const double *x = s->x[b];
+        brc_sub(d, x, s->x[a]);
+        code = brc_error_set(ctx, BRC_ERR_GEOMETRY, __FILE__, __LINE__,
+                             "%s: the seeds of %s %d and %d, at (%g, %g, %g) m, are %.3g m apart; "
+                             "the least is %.3g m, a thousandth of the grain size: remove or move "
+                             "one of them",
+                             key, line ? "lines" : "numbers", line ? line[a] : a,
+                             line ? line[b] : b, x[0], x[1], x[2], brc_norm(d), least);
+    }
+    brc_candidates_free(&near);
+    free(reach);
+    return code;
+}
+
 int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
                    struct brc_seeds *out)
 {
     const int *cells = p->cells;
     double count = (double)cells[0] * cells[1] * cells[2];
     *out = (struct brc_seeds){0};
-    if (count > 1e7)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.cells gives %g seeds, at most 1e7 are allowed",
-                 count);
+    if (count > BRC_MAX_GRAINS)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.cells gives %g seeds, at most %g are allowed", count,
+                 (double)BRC_MAX_GRAINS);
     double edge = p->size[0] / cells[0];
     for (int k = 1; k < 3; k++)
         if (fabs(p->size[k] / cells[k] - edge) > 1e-6 * edge)
@@ -46,7 +77,10 @@ int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
         }
     }
     gsl_rng_free(rng);
-    return 0;
+    int code = check_near(ctx, out, edge, "specimen.jitter, specimen.seed", NULL);
+    if (code != 0)
+        brc_seeds_free(out);
+    return code;
 }
 
 /* A row of the file, for sorting by place. */
@@ -93,7 +127,7 @@ static int check_points(struct brc_context *ctx, const char *path, const struct 
 }
 
 int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *p,
-                     struct brc_seeds *out)
+                     double domain_volume, struct brc_seeds *out)
 {
     struct brc_numbers rows;
     *out = (struct brc_seeds){0};
@@ -115,6 +149,9 @@ int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *
         if (out->radius)
             out->radius[i] = row[3];
     }
+    if (code == 0)
+        code = check_near(ctx, out, cbrt(domain_volume / (double)rows.n), "specimen.points",
+                          rows.line);
     brc_numbers_free(&rows);
     if (code != 0)
         brc_seeds_free(out);

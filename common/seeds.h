@@ -16,9 +16,10 @@ void brc_seeds_free(struct brc_seeds *s);
 /* One point per cubic cell of the box, uniform in a centred box of jitter cells (gt12 Fig 4). */
 int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
                    struct brc_seeds *out);
-/* The points of the file specimen.points, with radii where it has them; no two may coincide. */
+/* The points of the file specimen.points, with radii where it has them; none may be nearer to
+ * another than a thousandth of the grain size. */
 int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *p,
-                     struct brc_seeds *out);
+                     double domain_volume, struct brc_seeds *out);
 /* Uniform diameters, inserted at half radius, grown and relaxed without cohesion (vgcm 2.5). */
 int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *p,
                       const struct brc_convex *domain, double domain_volume, struct brc_seeds *out);

@@ -22,6 +22,10 @@ enum { MAX_FILE_PLANES = 1000 };
 /* Files of planes have nine digits or more: what differs by less is one plane. Three components and
  * a distance, each half a digit off in either of two planes. */
 static const double plane_digits = 4e-9;
+/* m: lengths of a specimen, however it is given */
+static const double least_length = 1e-9, largest_length = 1e9;
+/* Fewer grains across do not stand for a rock: each of them shows in the result. */
+static const double few_grains = 5;
 
 /* Sides of the polygon that stands for a circle where the case gives none. A flat side under a
  * platen is loaded over its whole width at once, a circle over a patch that grows with the load:
@@ -147,7 +151,7 @@ static int make_seeds(struct brc_context *ctx, struct brc_specimen *s, struct br
         return brc_seeds_sort(ctx, seeds);
     }
     if (p->grains == BRC_GRAINS_POINTS) {
-        BRC_TRY(brc_seeds_points(ctx, p, seeds));
+        BRC_TRY(brc_seeds_points(ctx, p, s->domain_volume, seeds));
         return brc_seeds_sort(ctx, seeds);
     }
     if (brc_packing_cache_load(ctx, p, &s->domain, seeds))
@@ -202,6 +206,12 @@ static int tessellate(struct brc_context *ctx, struct brc_specimen *s)
     if (p->grains == BRC_GRAINS_MESH) {
         if (p->shape != BRC_SHAPE_CYLINDER)
             BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.grains: mesh needs specimen.shape: cylinder");
+        double count = BRC_PI / 4 * p->diameter * p->diameter / p->triangle_area;
+        if (count > BRC_MAX_GRAINS)
+            BRC_FAIL(
+                ctx, BRC_ERR_INPUT,
+                "specimen.triangle_area = %g m2 asks for %.3g triangles, at most %g are allowed",
+                p->triangle_area, count, (double)BRC_MAX_GRAINS);
         return brc_tess_disc(ctx, p->diameter / 2, p->height, number_of_sides(p), p->triangle_area,
                              &s->facets);
     }
@@ -229,23 +239,66 @@ static int read_tess(struct brc_context *ctx, struct brc_specimen *s)
     return p->tess_spheres ? check_centres(ctx, &s->facets) : 0;
 }
 
+/* Extents of a domain that comes from a file; the others are within their keys' ranges. */
+static int check_domain(struct brc_context *ctx, const struct brc_specimen *s)
+{
+    const struct brc_convex *d = &s->domain;
+    for (int k = 0; k < 3; k++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (size_t v = 0; v < d->n_vertices; v++) {
+            low = fmin(low, d->vertex[v][k]);
+            high = fmax(high, d->vertex[v][k]);
+        }
+        double length = high - low;
+        if (!(length >= least_length && length <= largest_length))
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "the specimen measures %g m along %c; allowed are %g m to %g m: lengths in "
+                     "files are metres, but for specimen.tess_unit",
+                     length, "xyz"[k], least_length, largest_length);
+    }
+    return 0;
+}
+
+static int make_or_read(struct brc_context *ctx, struct brc_specimen *s)
+{
+    double centroid[3], inertia[3][3];
+    bool is_read = s->params.grains == BRC_GRAINS_TESS;
+    BRC_TRY(is_read ? read_tess(ctx, s) : make_domain(ctx, &s->params, &s->domain));
+    BRC_TRY(check_domain(ctx, s));
+    brc_convex_mass(&s->domain, &s->domain_volume, centroid, inertia);
+    return is_read ? 0 : tessellate(ctx, s);
+}
+
 int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_params *params,
                         struct brc_specimen *out)
 {
-    double centroid[3], inertia[3][3];
-    bool is_read = params->grains == BRC_GRAINS_TESS;
     *out = (struct brc_specimen){.params = *params};
     brc_convex_init(&out->domain);
-    int code = is_read ? read_tess(ctx, out) : make_domain(ctx, params, &out->domain);
-    if (code == 0)
-        brc_convex_mass(&out->domain, &out->domain_volume, centroid, inertia);
-    if (code == 0 && !is_read)
-        code = tessellate(ctx, out);
+    int code = make_or_read(ctx, out);
     if (code == 0)
         measure(out);
     else
         brc_specimen_free(out);
     return code;
+}
+
+void brc_specimen_warn(struct brc_context *ctx, const struct brc_specimen *s)
+{
+    double low[3], high[3], grain = cbrt(s->domain_volume / (double)s->facets.n_cells), across;
+    bool is_flat = s->params.grains == BRC_GRAINS_MESH; /* one grain thick by design */
+    brc_specimen_extent(s, low, high);
+    if (is_flat)
+        grain = sqrt(s->domain_volume / ((high[2] - low[2]) * (double)s->facets.n_cells));
+    int least = 0;
+    for (int k = 1; k < (is_flat ? 2 : 3); k++)
+        if (high[k] - low[k] < high[least] - low[least])
+            least = k;
+    across = (high[least] - low[least]) / grain;
+    if (across < few_grains)
+        brc_log(ctx,
+                "warning: the specimen is about %.1f grains across along %c, and below %g single "
+                "grains decide on the result: use smaller grains or a larger specimen",
+                across, "xyz"[least], few_grains);
 }
 
 void brc_specimen_free(struct brc_specimen *s)

@@ -17,12 +17,16 @@ enum brc_grains {
     BRC_GRAINS_TESS
 };
 
+/* What is asked for is bounded before work begins. */
+enum { BRC_MAX_GRAINS = 10000000 };
+
 #define BRC_SPECIMEN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                            \
     CHOICE(shape, "box|cylinder|polyhedron", "cylinder", "outer shape")                            \
-    REAL3(size, "m", "10 cm, 10 cm, 10 cm", "(0, inf)", "box: edge lengths along x, y, z",         \
+    REAL3(size, "m", "10 cm, 10 cm, 10 cm", "[1e-9, 1e9]", "box: edge lengths along x, y, z",      \
           "shape=box")                                                                             \
-    REAL(diameter, "m", "80 mm", "(0, inf)", "cylinder: diameter of the circle", "shape=cylinder") \
-    REAL(height, "m", "160 mm", "(0, inf)", "cylinder: height (thickness of a disc), along z",     \
+    REAL(diameter, "m", "80 mm", "[1e-9, 1e9]", "cylinder: diameter of the circle",                \
+         "shape=cylinder")                                                                         \
+    REAL(height, "m", "160 mm", "[1e-9, 1e9]", "cylinder: height (thickness of a disc), along z",  \
          "shape=cylinder")                                                                         \
     INT(sides, "0", "[0, 1024]",                                                                   \
         "cylinder: sides of the prism, equal area to the circle; even; 0: 256 in a Brazilian "     \
@@ -38,12 +42,12 @@ enum brc_grains {
          "grains=points")                                                                          \
     TEXT(tess, "", "tess: tessellation file of Neper (.tess), three-dimensional, flat faces",      \
          "grains=tess")                                                                            \
-    REAL(tess_unit, "m", "1 m", "(0, inf)", "tess: what the length 1 is in the file",              \
+    REAL(tess_unit, "m", "1 m", "[1e-12, 1e12]", "tess: what the length 1 is in the file",         \
          "grains=tess")                                                                            \
     FLAG(tess_spheres, "off", "tess: weights of the seeds are radii of spheres", "grains=tess")    \
-    REAL(diameter_min, "m", "4 mm", "(0, inf)", "packing: smallest sphere diameter",               \
+    REAL(diameter_min, "m", "4 mm", "[1e-9, 1e9]", "packing: smallest sphere diameter",            \
          "grains=packing")                                                                         \
-    REAL(diameter_max, "m", "6 mm", "(0, inf)", "packing: largest sphere diameter",                \
+    REAL(diameter_max, "m", "6 mm", "[1e-9, 1e9]", "packing: largest sphere diameter",             \
          "grains=packing")                                                                         \
     REAL(solid_fraction, "1", "0.676", "(0.1, 0.75)", "packing: sphere volume / domain volume",    \
          "grains=packing, count=0")                                                                \
@@ -52,7 +56,8 @@ enum brc_grains {
     INT3(cells, "10, 10, 10", "[1, 1000]", "grid: cubic cells along x, y, z", "grains=grid")       \
     REAL(jitter, "1", "1", "[0, 1]", "grid: width of the seeds' random box, in cells; 0: exact",   \
          "grains=grid")                                                                            \
-    REAL(triangle_area, "m2", "5 cm2", "(0, inf)", "mesh: largest triangle area", "grains=mesh")   \
+    REAL(triangle_area, "m2", "5 cm2", "[1e-18, 1e18]", "mesh: largest triangle area",             \
+         "grains=mesh")                                                                            \
     INT(seed, "1", "[0, 2147483647]", "random seed", "grains=packing|grid")                        \
     REAL(min_area_ratio, "1", "1e-4", "[0, 0.1]",                                                  \
          "facets below this part of the mean area are no contacts",                                \
@@ -79,6 +84,8 @@ struct brc_specimen {
 int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_params *params,
                         struct brc_specimen *out);
 void brc_specimen_free(struct brc_specimen *s);
+/* Logs a warning where the specimen is only a few grains wide in some direction. */
+void brc_specimen_warn(struct brc_context *ctx, const struct brc_specimen *s);
 /* Extent of the domain: lowest and highest corner. */
 void brc_specimen_extent(const struct brc_specimen *s, double low[3], double high[3]);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tess.h"
 
+#include "progress.h"
 #include "tess_cgal.h"
 #include "vec.h"
 
@@ -12,6 +13,8 @@
  * 1e-6. Only details of just the weld length can spoil a cell; then the next length is tried. */
 static const double weld_lengths[] = {1e-9, 1e-11, 1e-7};
 static const double clip_part = 0.1;
+/* what the cells of CGAL and their cuts take of the time, about */
+static const double cells_part = 0.5, clips_part = 0.3;
 
 static int check_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                        const struct brc_convex *domain)
@@ -46,11 +49,13 @@ static int copy_seeds(struct brc_context *ctx, double (*seed)[3], const double *
 }
 
 static int clip_and_weld(struct brc_context *ctx, struct brc_complex *c,
-                         const struct brc_convex *domain, double weld)
+                         const struct brc_convex *domain, double weld, struct brc_work *work)
 {
     BRC_TRY(brc_complex_weld(ctx, c, weld));
-    for (size_t f = 0; f < domain->n_faces; f++)
+    for (size_t f = 0; f < domain->n_faces; f++) {
         BRC_TRY(brc_complex_clip(ctx, c, &domain->plane[f], clip_part * weld));
+        brc_work_update(work, cells_part + clips_part * (double)(f + 1) / (double)domain->n_faces);
+    }
     BRC_TRY(brc_complex_weld(ctx, c, weld));
     return brc_complex_settle(ctx, c, domain);
 }
@@ -66,8 +71,9 @@ struct work {
     struct brc_convex own_domain;
     double volume, centroid[3];
     struct brc_complex complex;
-    int32_t *hider;     /* as of brc_cgal_cells */
-    uint8_t *is_empty;  /* no cell inside the domain */
+    int32_t *hider;    /* as of brc_cgal_cells */
+    uint8_t *is_empty; /* no cell inside the domain */
+    struct brc_work progress;
     bool is_incomplete; /* some seed has no cell: no other weld length helps */
 };
 
@@ -104,7 +110,8 @@ static int make_cells(struct brc_context *ctx, struct work *w, double weld)
     brc_complex_init(&w->complex, w->n);
     BRC_TRY(brc_cgal_cells(ctx, w->seed, w->radius, w->n, w->centroid,
                            brc_convex_reach(w->domain, w->centroid), w->hider, &w->complex));
-    BRC_TRY(clip_and_weld(ctx, &w->complex, w->domain, weld));
+    brc_work_update(&w->progress, cells_part);
+    BRC_TRY(clip_and_weld(ctx, &w->complex, w->domain, weld, &w->progress));
     w->is_incomplete = brc_complex_empty_cells(&w->complex, w->is_empty) > 0;
     return 0;
 }
@@ -183,6 +190,7 @@ int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *
 {
     struct work w = {.seed = seed, .radius = radius, .n = n, .domain = domain};
     memset(out, 0, sizeof *out);
+    brc_work_begin(&w.progress, ctx, "tessellating");
     int code = prepare(ctx, &w);
     if (code == 0 && hidden)
         code = make_cells(ctx, &w, weld_lengths[0] * cbrt(w.volume / (double)n));
@@ -194,6 +202,7 @@ int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *
         brc_facets_mark_contacts(out, min_area_ratio);
     if (code == 0 && !hidden && w.own_seed)
         brc_facets_shift(out, w.origin);
+    brc_work_end(&w.progress);
     brc_complex_free(&w.complex);
     brc_convex_free(&w.own_domain);
     free(w.own_seed);

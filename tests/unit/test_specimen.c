@@ -388,6 +388,50 @@ static void test_away_from_the_origin(void **state)
     remove(points);
 }
 
+/* What is asked for is refused before work begins, with what is possible. */
+static void test_bounds(void **state)
+{
+    (void)state;
+    char planes[64], points[64];
+    struct brc_specimen s;
+    time_t start = time(NULL);
+    /* 0.75 of the volume of the cylinder, and spheres of 136 mm3 in the mean */
+    struct brc_specimen_params p = PARAMS("diameter", "20 mm", "height", "40 mm", "diameter_min",
+                                          "4 mm", "diameter_max", "6 mm", "count", "20000");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "at most 138 fit");
+    p.count = 139;
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "at most 138 fit");
+    p = PARAMS("grains", "mesh", "triangle_area", "1e-12 m2");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "5.03e+09 triangles");
+    for (int i = 0; i < 3; i++) {
+        static const char *const sizes[] = {"1e-163 m", "1e-105 m", "1e160 m"};
+        CHECK_FAILS(&ctx,
+                    brc_params_set(&ctx, brc_specimen_param_list, &p, "specimen", "diameter",
+                                   sizes[i], "test"),
+                    BRC_ERR_INPUT, "allowed");
+    }
+    p = PARAMS("shape", "polyhedron", "grains", "points", "planes", path_of(planes, "planes"),
+               "points", path_of(points, "points"));
+    for (int i = 0; i < 2; i++) {
+        char text[300];
+        double d = i == 0 ? 1e-100 : 1e60;
+        snprintf(text, sizeof text, "1 0 0 %g\n-1 0 0 0\n0 1 0 %g\n0 -1 0 0\n0 0 1 %g\n0 0 -1 0\n",
+                 d, d, d);
+        write_file(planes, text);
+        write_file(points, "0 0 0\n");
+        CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "specimen measures");
+    }
+    write_file(planes, "1 0 0 1\n-1 0 0 0\n0 1 0 1\n0 -1 0 0\n0 0 1 1\n0 0 -1 0\n");
+    write_file(points, "0.2 0.5 0.5\n0.7 0.5 0.5\n\n0.20000001 0.5 0.5\n");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "lines 1 and 4");
+    write_file(points, "0.2 0.5 0.5\n0.7 0.5 0.5\n\n0.202 0.5 0.5\n");
+    CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
+    brc_specimen_free(&s);
+    remove(planes);
+    remove(points);
+    assert_true(time(NULL) - start < 5);
+}
+
 static void test_bad_input(void **state)
 {
     (void)state;
@@ -404,9 +448,9 @@ static void test_bad_input(void **state)
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "diameter_min");
     p = PARAMS("diameter", "3 mm", "height", "1 mm");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "fit");
-    /* far too many spheres: some centre stays in the cell of another */
-    p = PARAMS("diameter", "20 mm", "height", "15 mm", "diameter_min", "1 mm", "diameter_max",
-               "9 mm", "count", "400", "cache", "off");
+    /* very unequal spheres: some centre stays in the cell of another */
+    p = PARAMS("diameter", "20 mm", "height", "15 mm", "diameter_min", "0.1 mm", "diameter_max",
+               "9 mm", "count", "36", "cache", "off");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "sphere ");
     p = PARAMS("shape", "box", "grains", "grid", "size", "4 cm, 2 cm, 2 cm", "cells", "2, 2, 2");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "cube");
@@ -500,6 +544,7 @@ int main(void)
         cmocka_unit_test(test_polyhedron),
         cmocka_unit_test(test_same_cells_anywhere),
         cmocka_unit_test(test_away_from_the_origin),
+        cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_cache),
     };
