@@ -256,22 +256,29 @@ static int fill_complex(struct tess *t, struct brc_complex *c, const struct brc_
     return code == 0 ? brc_complex_settle(t->file.ctx, c, domain) : code;
 }
 
-/* The seed, or the centre of the cell where it lies outside of the faces. */
-static void keep_seeds_inside(const struct tess *t, struct brc_facets *out)
+/* A seed on the other side of a face gives way to the centre of its cell: cells are measured from
+ * their seeds. */
+static void keep_seeds_inside(struct tess *t)
 {
-    for (size_t f = 0; f < out->n_facets; f++)
-        for (int side = 0; side < 2 && out->cell[f][side] >= 0; side++) {
-            int32_t c = out->cell[f][side];
-            double d[3];
-            brc_sub(d, out->centroid[f], out->seed[c]);
-            if ((side == 0 ? 1 : -1) * brc_dot(d, out->normal[f]) <= 0)
-                brc_copy(out->seed[c], t->centre[t->order[c]]);
+    for (size_t i = 0; i < t->file.n_faces; i++) {
+        const struct brc_neper_face *f = &t->file.face[i];
+        double area[3], middle[3], to_seed[3], to_centre[3];
+        measure_face(t, f, area, middle);
+        for (int k = 0; k < 2 && f->cell[k] >= 0; k++) {
+            double *seed = t->file.seed[f->cell[k]];
+            brc_sub(to_seed, seed, middle);
+            brc_sub(to_centre, t->centre[f->cell[k]], middle);
+            if (brc_dot(to_seed, area) * brc_dot(to_centre, area) <= 0)
+                brc_copy(seed, t->centre[f->cell[k]]);
         }
+    }
 }
 
 static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, double volume,
                        struct brc_facets *out)
 {
+    if (t->file.seed && !has_spheres)
+        keep_seeds_inside(t);
     out->precision = t->precision;
     out->seed = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *out->seed);
     out->radius = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *out->radius);
@@ -283,8 +290,6 @@ static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, 
         out->radius[i] = t->file.seed && has_spheres ? t->file.seed[own][3] : 0;
     }
     BRC_TRY(brc_complex_finish(t->file.ctx, c, out));
-    if (!has_spheres)
-        keep_seeds_inside(t, out);
     return brc_facets_verify(t->file.ctx, out, volume, t->origin);
 }
 

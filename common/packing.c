@@ -24,9 +24,8 @@ static const double STEP = 0.2, FRICTION = 0.3;
  * moves them by less than a thousandth of a radius at six times the cost. */
 static const double REST = 1e-2, LAST_REST = 1e-5;
 static const double SKIN = 0.3; /* of the mean radius */
-/* Largest part of the volume that spheres may fill, as of specimen.solid_fraction; they overlap
- * then by a tenth of their diameters. */
-static const double MAX_FRACTION = 0.75;
+/* Spheres whose volumes sum to more than that of the domain press each other out of it. */
+static const double MAX_FRACTION = 1;
 /* Overlap, in mean radii, that counts as none: a loose packing rests when only such are left. */
 static const double LOOSE = 1e-3;
 
@@ -77,10 +76,10 @@ static int choose_count(struct brc_context *ctx, const struct brc_specimen_param
                  domain_volume, mean);
     if (s->count > most)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "specimen.count = %d spheres would fill %.3g of the domain's volume; at most %.0f "
-                 "fit, which fill %g of it: lower specimen.count or specimen.diameter_min and "
-                 "diameter_max, or enlarge the specimen",
-                 s->count, count * mean / domain_volume, most, MAX_FRACTION);
+                 "specimen.count = %d spheres have %.3g times the volume of the specimen; at most "
+                 "%.0f fit: lower specimen.count or specimen.diameter_min and diameter_max, or "
+                 "enlarge the specimen",
+                 s->count, count * mean / domain_volume, most);
     if (count > BRC_MAX_GRAINS)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%g spheres asked for, at most %g are allowed; raise specimen.diameter_min and "

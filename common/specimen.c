@@ -294,7 +294,7 @@ void brc_specimen_warn(struct brc_context *ctx, const struct brc_specimen *s)
         if (high[k] - low[k] < high[least] - low[least])
             least = k;
     across = (high[least] - low[least]) / grain;
-    if (across < few_grains)
+    if (across < few_grains * (1 - 1e-9))
         brc_log(ctx,
                 "warning: the specimen is about %.1f grains across along %c, and below %g single "
                 "grains decide on the result: use smaller grains or a larger specimen",

@@ -15,7 +15,7 @@ int fuzz_numbers(const uint8_t *data, size_t size)
     struct brc_seeds seeds;
     fuzz_write(data, size);
     snprintf(p.points, sizeof p.points, "%s", fuzz_path());
-    int code = brc_seeds_points(&ctx, &p, &seeds);
+    int code = brc_seeds_points(&ctx, &p, 1, &seeds);
     fuzz_check_record(&ctx, code);
     FUZZ_MUST((code == 0) == (seeds.n > 0));
     for (size_t i = 0; i < seeds.n; i++)

@@ -100,12 +100,49 @@ static void test_time_left(void **state)
     assert_non_null(strstr(text, "time left unknown"));
 }
 
+/* What work before a run says on standard error while half a minute passes. */
+static void work_says(bool quiet, bool is_terminal, char *text, size_t size)
+{
+    struct brc_context ctx = {.quiet = quiet};
+    struct brc_work w;
+    FILE *out = tmpfile();
+    int kept = dup(STDERR_FILENO);
+    assert_true(out && kept >= 0 && dup2(fileno(out), STDERR_FILENO) >= 0);
+    brc_work_begin(&w, &ctx, "packing");
+    w.is_terminal = is_terminal;
+    brc_work_update(&w, 0.01); /* at once: too early to say anything */
+    w.started -= 30;
+    w.last_drawn -= 30;
+    brc_work_update(&w, 0.25);
+    brc_work_update(&w, 0.26);
+    brc_work_end(&w);
+    fflush(stderr);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    rewind(out);
+    text[fread(text, 1, size - 1, out)] = '\0';
+    fclose(out);
+}
+
+static void test_work(void **state)
+{
+    (void)state;
+    char text[2000];
+    work_says(false, false, text, sizeof text);
+    assert_string_equal(text, "packing: 25 %, 0:30\n");
+    work_says(true, false, text, sizeof text);
+    assert_string_equal(text, "");
+    work_says(false, true, text, sizeof text);
+    assert_non_null(strstr(text, "[######..................]  0:30"));
+    assert_string_equal(text + strlen(text) - 4, "\r\033[K"); /* wiped */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_duration),  cmocka_unit_test(test_plain_lines),
         cmocka_unit_test(test_quiet),     cmocka_unit_test(test_pipe),
-        cmocka_unit_test(test_time_left),
+        cmocka_unit_test(test_time_left), cmocka_unit_test(test_work),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -395,12 +395,16 @@ static void test_bounds(void **state)
     char planes[64], points[64];
     struct brc_specimen s;
     time_t start = time(NULL);
-    /* 0.75 of the volume of the cylinder, and spheres of 136 mm3 in the mean */
+    /* the volume of the cylinder over 68 mm3, that of a sphere in the mean */
     struct brc_specimen_params p = PARAMS("diameter", "20 mm", "height", "40 mm", "diameter_min",
                                           "4 mm", "diameter_max", "6 mm", "count", "20000");
-    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "at most 138 fit");
-    p.count = 139;
-    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "at most 138 fit");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "at most 184 fit");
+    p.count = 185;
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "at most 184 fit");
+    p.count = 170;
+    p.cache = 0;
+    CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
+    brc_specimen_free(&s);
     p = PARAMS("grains", "mesh", "triangle_area", "1e-12 m2");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "5.03e+09 triangles");
     for (int i = 0; i < 3; i++) {
@@ -432,6 +436,36 @@ static void test_bounds(void **state)
     assert_true(time(NULL) - start < 5);
 }
 
+/* Whether the specimen of a grid is warned about. */
+static bool is_warned(const char *size, const char *cells, char *text, size_t length)
+{
+    struct brc_specimen s;
+    struct brc_specimen_params p =
+        PARAMS("shape", "box", "grains", "grid", "size", size, "cells", cells);
+    FILE *out = tmpfile();
+    int kept = dup(STDERR_FILENO);
+    CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
+    assert_true(out && kept >= 0 && dup2(fileno(out), STDERR_FILENO) >= 0);
+    brc_specimen_warn(&ctx, &s);
+    fflush(stderr);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    brc_specimen_free(&s);
+    rewind(out);
+    text[fread(text, 1, length - 1, out)] = '\0';
+    fclose(out);
+    return strstr(text, "warning: ") != NULL;
+}
+
+static void test_few_grains(void **state)
+{
+    (void)state;
+    char text[400];
+    assert_false(is_warned("5 cm, 6 cm, 7 cm", "5, 6, 7", text, sizeof text));
+    assert_true(is_warned("6 cm, 4 cm, 7 cm", "6, 4, 7", text, sizeof text));
+    assert_non_null(strstr(text, "4.0 grains across along y"));
+}
+
 static void test_bad_input(void **state)
 {
     (void)state;
@@ -448,10 +482,6 @@ static void test_bad_input(void **state)
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "diameter_min");
     p = PARAMS("diameter", "3 mm", "height", "1 mm");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "fit");
-    /* very unequal spheres: some centre stays in the cell of another */
-    p = PARAMS("diameter", "20 mm", "height", "15 mm", "diameter_min", "0.1 mm", "diameter_max",
-               "9 mm", "count", "36", "cache", "off");
-    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "sphere ");
     p = PARAMS("shape", "box", "grains", "grid", "size", "4 cm, 2 cm, 2 cm", "cells", "2, 2, 2");
     CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_INPUT, "cube");
 }
@@ -545,6 +575,7 @@ int main(void)
         cmocka_unit_test(test_same_cells_anywhere),
         cmocka_unit_test(test_away_from_the_origin),
         cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_few_grains),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_cache),
     };
