@@ -240,7 +240,7 @@ uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed)
         const struct brc_field *field = &c->points.set.fields[f];
         size_t size = brc_field_size(field);
         const char *column = brc_table_column(&c->points, f);
-        for (size_t i = 0; (field->flags & BRC_STATE) && i < c->n; i++)
+        for (size_t i = 0; brc_table_saves(&c->points, f) && i < c->n; i++)
             hash = brc_hash_bytes(column + (size_t)c->p0[i] * size, (size_t)c->np[i] * size, hash);
     }
     return hash;

@@ -206,11 +206,35 @@ uint64_t brc_hash_bytes(const void *data, size_t n, uint64_t seed)
     return hash;
 }
 
+static bool is_named(const char *names, const char *name)
+{
+    size_t size = strlen(name);
+    for (const char *at = names; at && (at = strstr(at, name)); at += size) {
+        bool begins = at == names || at[-1] == ' ';
+        if (begins && (at[size] == ' ' || at[size] == '\0'))
+            return true;
+    }
+    return false;
+}
+
+void brc_table_leave_out(struct brc_table *t, const char *names)
+{
+    for (int i = 0; i < t->set.n && i < 64; i++)
+        if (is_named(names, t->set.fields[i].name))
+            t->left_out |= UINT64_C(1) << i;
+}
+
+bool brc_table_saves(const struct brc_table *t, int field)
+{
+    bool is_left_out = field < 64 && (t->left_out >> field & 1);
+    return (t->set.fields[field].flags & BRC_STATE) && !is_left_out;
+}
+
 uint64_t brc_table_hash(const struct brc_table *t, uint64_t seed)
 {
     uint64_t hash = brc_hash_bytes(&t->n, sizeof t->n, seed);
     for (int i = 0; i < t->set.n; i++)
-        if (t->set.fields[i].flags & BRC_STATE)
+        if (brc_table_saves(t, i))
             hash = brc_hash_bytes(brc_table_column(t, i), t->n * brc_field_size(&t->set.fields[i]),
                                   hash);
     return hash;

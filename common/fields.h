@@ -61,13 +61,19 @@ struct brc_fieldset {
 struct brc_table {
     const char *name; /* group name in output files */
     struct brc_fieldset set;
-    void *columns; /* the owner struct: column pointers at the fields' offsets */
-    size_t n, cap; /* rows in use, rows allocated */
-    void *block;   /* memory of all columns */
+    void *columns;     /* the owner struct: column pointers at the fields' offsets */
+    size_t n, cap;     /* rows in use, rows allocated */
+    void *block;       /* memory of all columns */
+    uint64_t left_out; /* bits of the fields that hold nothing here: neither saved nor hashed */
 };
 
 /* Binds a table to a caller-owned struct of column pointers (all NULL). */
 void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset set, void *columns);
+/* Fields that hold nothing in this table, whose set of fields serves others, too: names with a
+ * space between them; names that the table lacks are passed over, as is NULL. */
+void brc_table_leave_out(struct brc_table *t, const char *names);
+/* Whether a field is part of the state here. */
+bool brc_table_saves(const struct brc_table *t, int field);
 /* Sets the row count; new rows are zero; capacity grows by doubling. Columns are 64-byte aligned,
  * hold a multiple of 4 rows (what is past the last row may be read and written), and may move. */
 int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n);

@@ -23,9 +23,9 @@ static void copy_rows(const struct brc_state_part *part, int field, char *buffer
     }
 }
 
-static bool is_saved(const struct brc_field *field)
+static bool is_saved(const struct brc_state_part *part, int i)
 {
-    return (field->flags & BRC_STATE) != 0;
+    return part->table ? brc_table_saves(part->table, i) : part->set.fields[i].flags & BRC_STATE;
 }
 
 /* The dataset of a field; the name is put into the buffer. */
@@ -62,7 +62,7 @@ static int write_part(const struct brc_h5_file *f, const struct brc_state_part *
     BRC_TRY(brc_h5_put_group(f, part->path));
     BRC_TRY(brc_h5_put_count(f, part->path, "rows", part->n));
     for (int i = 0; i < part->set.n; i++)
-        if (is_saved(&part->set.fields[i]))
+        if (is_saved(part, i))
             BRC_TRY(write_field(f, part, i));
     return 0;
 }
@@ -93,13 +93,13 @@ static int read_part(const struct brc_h5_file *f, struct brc_state_part *part)
     part->n = rows;
     for (int i = 0; i < part->set.n; i++) { /* before any memory is taken for it */
         struct brc_h5_array a = array_of(part, i, name);
-        if (is_saved(&part->set.fields[i]))
+        if (is_saved(part, i))
             BRC_TRY(brc_h5_check_array(f, &a));
     }
     if (!part->is_fixed)
         BRC_TRY(brc_table_resize(f->ctx, part->table, rows));
     for (int i = 0; i < part->set.n; i++)
-        if (is_saved(&part->set.fields[i]))
+        if (is_saved(part, i))
             BRC_TRY(read_field(f, part, i));
     return 0;
 }

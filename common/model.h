@@ -70,6 +70,9 @@ struct brc_model {
     int (*after_break)(struct brc_sim *sim, void *state, size_t first);
     /* A loaded state has replaced all fields: derive private memory again. Default: nothing. */
     int (*restore)(struct brc_sim *sim, void *state);
+    /* Fields that hold nothing in this model, in the tables of bodies, pairs and platens and those
+     * of their points: names with spaces between. They are not saved. Default: none. */
+    const char *no_bodies, *no_pairs, *no_platens;
     /* Part of the tensile strength of an intact bond (row of sim->pairs) that is left, in [0, 1]:
      * tells what holds together. Default: 1. */
     double (*strength_left)(const struct brc_sim *sim, const void *state, size_t row);

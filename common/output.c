@@ -189,19 +189,13 @@ void brc_output_cell(FILE *out, const char *text)
     fputc('"', out);
 }
 
-/* Scratch is no result, and a file does not hold it. */
-static bool is_state(const struct brc_field *f)
-{
-    return (f->flags & BRC_STATE) != 0;
-}
-
 static void csv_header(FILE *out, const struct brc_table *t)
 {
     const char *comma = "";
     char cell[CELL_SIZE];
     for (int i = 0; i < t->set.n; i++) {
         const struct brc_field *f = &t->set.fields[i];
-        for (int j = 0; j < f->width && is_state(f); j++) {
+        for (int j = 0; brc_table_saves(t, i) && j < f->width; j++) {
             if (f->width == 1)
                 snprintf(cell, sizeof cell, "%s [%s]", f->name, f->unit);
             else
@@ -239,8 +233,8 @@ void brc_output_table(FILE *out, const struct brc_table *t)
         const char *comma = "";
         for (int i = 0; i < t->set.n; i++) {
             const struct brc_field *f = &t->set.fields[i];
-            size_t width = (size_t)f->width;
-            for (size_t j = 0; j < width && is_state(f); j++) {
+            size_t width = brc_table_saves(t, i) ? (size_t)f->width : 0;
+            for (size_t j = 0; j < width; j++) {
                 fputs(comma, out);
                 csv_value(out, f, brc_table_column(t, i), row * width + j);
                 comma = ",";

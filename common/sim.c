@@ -281,6 +281,13 @@ static void choose_damped(struct brc_sim *sim, const struct brc_test_params *tes
     sim->damping_alpha = sim->run.regime == BRC_QUASI_STATIC ? alpha : 0;
 }
 
+static void leave_out(struct brc_contacts *c, const char *names)
+{
+    brc_table_leave_out(&c->table, names);
+    brc_table_leave_out(&c->model, names);
+    brc_table_leave_out(&c->points, names);
+}
+
 /* Tables of all parts of the state: rows for the bodies, none of the others. */
 static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
 {
@@ -290,8 +297,12 @@ static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
     BRC_TRY(brc_bodies_create(sim->ctx, &sim->bodies, n_grains, n_platens, m->body_fields));
     BRC_TRY(
         brc_contacts_create(sim->ctx, &sim->pairs, "pairs", n, m->contact_fields, m->point_fields));
-    return brc_contacts_create(sim->ctx, &sim->platens, "platens", n, m->contact_fields,
-                               m->point_fields);
+    BRC_TRY(brc_contacts_create(sim->ctx, &sim->platens, "platens", n, m->contact_fields,
+                                m->point_fields));
+    brc_table_leave_out(&sim->bodies.table, m->no_bodies);
+    leave_out(&sim->pairs, m->no_pairs);
+    leave_out(&sim->platens, m->no_platens);
+    return 0;
 }
 
 int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model)

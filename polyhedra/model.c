@@ -162,6 +162,7 @@ const struct brc_model brc_model_polyhedra = {
     .point_fields = BRC_FIELDSET(point_fields, struct poly_points),
     .point_lanes = BRC_LANES,
     .flags = BRC_MODEL_ROTATES | BRC_MODEL_ORIENTED,
+    .no_platens = "room awake carried shift held tangent kind j near sleep",
     .shape = poly_shape,
     .bond = poly_open_bonds,
     .pairs = poly_update_rows,

@@ -89,7 +89,7 @@ static size_t check_table(const struct brc_sim *sim, const char *path, const str
         for (int i = 0; i < t->set.n; i++)
             for (int j = 0; j < t->set.fields[i].width; j++) {
                 const struct brc_field *f = &t->set.fields[i];
-                if (!(f->flags & BRC_STATE))
+                if (!brc_table_saves(t, i))
                     continue;
                 assert_false(is_end);
                 is_end = take_field(&at, field, sizeof field);
