@@ -5,15 +5,20 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { LONGEST_PATH = 200 }; /* in messages; of longer ones the end is told */
+
 const char *brc_case_where(const struct brc_case *c, int line, bool is_override,
                            char where[BRC_CASE_WHERE_SIZE])
 {
+    int n = (int)strlen(c->path);
+    bool is_long = n > LONGEST_PATH;
+    const char *path = is_long ? c->path + n - LONGEST_PATH : c->path;
     if (is_override)
         snprintf(where, BRC_CASE_WHERE_SIZE, "--set");
     else if (line > 0)
-        snprintf(where, BRC_CASE_WHERE_SIZE, "%.200s:%d", c->path, line);
+        snprintf(where, BRC_CASE_WHERE_SIZE, "%s%s:%d", is_long ? "..." : "", path, line);
     else
-        snprintf(where, BRC_CASE_WHERE_SIZE, "%.200s", c->path);
+        snprintf(where, BRC_CASE_WHERE_SIZE, "%s%s", is_long ? "..." : "", path);
     return where;
 }
 

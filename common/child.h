@@ -12,7 +12,7 @@
 /* What a child leaves for its parent; plain data. */
 struct brc_outcome {
     int code;
-    char message[1024];
+    char message[BRC_MESSAGE_SIZE];
     struct brc_summary summary;
 };
 

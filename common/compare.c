@@ -105,6 +105,29 @@ static int run_all(struct compare *c)
     return 0;
 }
 
+static bool is_interrupt(const struct brc_child *child)
+{
+    return child->outcome.code == BRC_ERR_INTERRUPTED || child->outcome.code == BRC_ERR_NOT_BEGUN;
+}
+
+/* Tells of which models there is a state to go on from: those that have begun now or before. */
+static int fail_interrupted(struct compare *c)
+{
+    char begun[MAX_RUNS * sizeof c->child[0].name] = "";
+    size_t used = 0;
+    for (int i = 0; i < c->n; i++) {
+        bool was_begun = c->order->is_resumed && brc_run_has_begun(c->run[i].dir);
+        bool has_ended = i < c->n_started && c->child[i].outcome.code != BRC_ERR_NOT_BEGUN;
+        if (was_begun || has_ended)
+            used += (size_t)snprintf(begun + used, sizeof begun - used, "%s%s", used ? ", " : "",
+                                     c->child[i].name);
+    }
+    if (used == 0)
+        BRC_FAIL(c->ctx, BRC_ERR_NOT_BEGUN,
+                 "interrupted before the first step; nothing was saved in %s", c->order->dir);
+    BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; saved in %s: %s", c->order->dir, begun);
+}
+
 /* The first failure counts; an interruption counts less than a failure. Runs whose energy does not
  * add up have results to show. */
 static int judge(struct compare *c)
@@ -114,23 +137,19 @@ static int judge(struct compare *c)
         const struct brc_child *child = &c->child[i];
         if (child->outcome.code == 0 || child->outcome.code == BRC_ERR_ENERGY)
             continue;
-        if (!worst || (worst->outcome.code == BRC_ERR_INTERRUPTED &&
-                       child->outcome.code != BRC_ERR_INTERRUPTED))
+        if (!worst || (is_interrupt(worst) && !is_interrupt(child)))
             worst = child;
     }
-    if (worst && worst->outcome.code != BRC_ERR_INTERRUPTED)
-        BRC_FAIL(c->ctx, worst->outcome.code, "%s: %.900s", worst->name, worst->outcome.message);
-    if (worst || c->n_started < c->n)
-        BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; the states are saved in %s",
-                 c->order->dir);
-    return 0;
+    if (worst && !is_interrupt(worst))
+        BRC_FAIL(c->ctx, worst->outcome.code, "%s: %s", worst->name, worst->outcome.message);
+    return worst || c->n_started < c->n ? fail_interrupted(c) : 0;
 }
 
 static int judge_energy(const struct compare *c)
 {
     for (int i = 0; i < c->n; i++)
         if (c->child[i].outcome.code == BRC_ERR_ENERGY)
-            BRC_FAIL(c->ctx, BRC_ERR_ENERGY, "%.1000s", c->child[i].outcome.message);
+            BRC_FAIL(c->ctx, BRC_ERR_ENERGY, "%s", c->child[i].outcome.message);
     return 0;
 }
 

@@ -206,6 +206,13 @@ static double expected(const struct brc_converge_model *m, const struct brc_conv
     return n > 0 ? s->weight * sum / n : 0;
 }
 
+/* Of the runs in progress each tells itself what it has saved. */
+static int fail_interrupted(struct ladder *l)
+{
+    BRC_FAIL(l->ctx, BRC_ERR_INTERRUPTED, "interrupted; %zu finished runs are kept in %s",
+             l->record.n, l->study.order->dir);
+}
+
 /* A run that its setting has spoilt has no value but is done; other failures end all. */
 static int take_outcome(struct ladder *l, int slot)
 {
@@ -214,8 +221,10 @@ static int take_outcome(struct ladder *l, int slot)
     struct brc_converge_run *run = &t->setting->run[t->seed];
     bool is_spoilt = o->code == BRC_ERR_BLOWUP || o->code == BRC_ERR_ENERGY ||
                      o->code == BRC_ERR_INPUT || o->code == BRC_ERR_GEOMETRY;
+    if (o->code == BRC_ERR_NOT_BEGUN)
+        return fail_interrupted(l);
     if (o->code != 0 && !is_spoilt)
-        BRC_FAIL(l->ctx, o->code, "%s: %.900s", t->model->model->name, o->message);
+        BRC_FAIL(l->ctx, o->code, "%s: %s", t->model->model->name, o->message);
     run->steps = o->summary.steps;
     run->dt = o->summary.dt;
     run->cpu_s = o->summary.cpu_s;
@@ -331,9 +340,7 @@ static int fill(struct ladder *l, const struct task *task)
 {
     struct brc_converge_run *run = &task->setting->run[task->seed];
     if (is_missing(l, run))
-        BRC_FAIL(l->ctx, BRC_ERR_INTERRUPTED,
-                 "interrupted; the finished runs are kept in %s, unfinished ones are saved",
-                 l->study.order->dir);
+        return fail_interrupted(l);
     return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 int brc_error_set(struct brc_context *ctx, int code, const char *file, int line, const char *format,
                   ...)
@@ -15,8 +16,10 @@ int brc_error_set(struct brc_context *ctx, int code, const char *file, int line,
     ctx->line = line;
     va_list args;
     va_start(args, format);
-    vsnprintf(ctx->message, sizeof ctx->message, format, args);
+    int n = vsnprintf(ctx->message, sizeof ctx->message, format, args);
     va_end(args);
+    if (n >= BRC_MESSAGE_SIZE)
+        strcpy(ctx->message + sizeof ctx->message - 4, "...");
     /* one line, whatever a bad file has put into it */
     for (char *c = ctx->message; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)

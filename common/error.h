@@ -8,17 +8,18 @@
 #include "brc.h"
 
 /* name, code, exit status of the program, text */
-#define BRC_ERRORS(X)                                          \
-    X(BRC_OK, 0, 0, "success")                                 \
-    X(BRC_ERR_INTERNAL, -1, 1, "internal error")               \
-    X(BRC_ERR_USAGE, -2, 2, "bad command line")                \
-    X(BRC_ERR_INPUT, -3, 3, "bad input")                       \
-    X(BRC_ERR_GEOMETRY, -4, 3, "impossible geometry")          \
-    X(BRC_ERR_IO, -5, 4, "input or output failed")             \
-    X(BRC_ERR_MEMORY, -6, 5, "out of memory")                  \
-    X(BRC_ERR_BLOWUP, -7, 6, "the simulation became unstable") \
-    X(BRC_ERR_INTERRUPTED, -8, 7, "interrupted")               \
-    X(BRC_ERR_ENERGY, -9, 8, "the energy does not add up; results are kept")
+#define BRC_ERRORS(X)                                                        \
+    X(BRC_OK, 0, 0, "success")                                               \
+    X(BRC_ERR_INTERNAL, -1, 1, "internal error")                             \
+    X(BRC_ERR_USAGE, -2, 2, "bad command line")                              \
+    X(BRC_ERR_INPUT, -3, 3, "bad input")                                     \
+    X(BRC_ERR_GEOMETRY, -4, 3, "impossible geometry")                        \
+    X(BRC_ERR_IO, -5, 4, "input or output failed")                           \
+    X(BRC_ERR_MEMORY, -6, 5, "out of memory")                                \
+    X(BRC_ERR_BLOWUP, -7, 6, "the simulation became unstable")               \
+    X(BRC_ERR_INTERRUPTED, -8, 7, "interrupted")                             \
+    X(BRC_ERR_ENERGY, -9, 8, "the energy does not add up; results are kept") \
+    X(BRC_ERR_NOT_BEGUN, -10, 7, "interrupted before anything was saved")
 
 enum brc_error_code {
 #define BRC_ERROR_ENUM(name, code, status, text) name = (code),
@@ -26,12 +27,15 @@ enum brc_error_code {
 #undef BRC_ERROR_ENUM
 };
 
+/* Room for two paths of the largest length; a message that is cut all the same ends in "...". */
+enum { BRC_MESSAGE_SIZE = 10000 };
+
 /* The context of a run. Created by the caller with BRC_CONTEXT_INIT; outlives everything else. */
 struct brc_context {
-    int code;           /* first failure, 0 when none */
-    char message[1024]; /* what went wrong and what to do, one line, without file and line of source
-                         */
-    const char *file;   /* source place of the failure, for developers */
+    int code; /* first failure, 0 when none */
+    /* what went wrong and what to do, one line, without file and line of source */
+    char message[BRC_MESSAGE_SIZE];
+    const char *file; /* source place of the failure, for developers */
     int line;
     int quiet; /* 1: no log lines */
 };

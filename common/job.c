@@ -329,7 +329,7 @@ static bool find_key(const char *text, const char **section, struct brc_param_li
 
 void brc_job_locate(struct brc_context *ctx, const struct brc_job *job)
 {
-    char key[BRC_CASE_KEY_SIZE], where[BRC_CASE_WHERE_SIZE], message[sizeof ctx->message];
+    char key[BRC_CASE_KEY_SIZE], where[BRC_CASE_WHERE_SIZE];
     const char *section;
     struct brc_param_list list;
     bool is_input =
@@ -339,6 +339,9 @@ void brc_job_locate(struct brc_context *ctx, const struct brc_job *job)
     const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, key, list);
     const struct brc_case_place *s = brc_case_find_section(&job->file, section);
     brc_case_where(&job->file, e ? e->line : s ? s->line : 0, e && e->is_override, where);
-    snprintf(message, sizeof message, "%s: %.760s", where, ctx->message);
-    memcpy(ctx->message, message, sizeof message);
+    size_t n = strlen(where), left = sizeof ctx->message - n - 3;
+    memmove(ctx->message + n + 2, ctx->message, left);
+    ctx->message[sizeof ctx->message - 1] = '\0';
+    memcpy(ctx->message, where, n);
+    memcpy(ctx->message + n, ": ", 2);
 }

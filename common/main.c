@@ -2,6 +2,7 @@
 /* The command line. */
 #include "comm.h"
 #include "compare.h"
+#include "console.h"
 #include "converge.h"
 #include "export.h"
 #include "info.h"
@@ -13,14 +14,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256, MAX_GIVEN = 300 };
+enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256 };
 
 struct options {
     const char *operand; /* CASE, or the section of `params`, or a file */
     const char *model, *dir, *table, *format;
     const char *observable, *axes;
     int seeds, refine, jobs;
-    const char *given[MAX_GIVEN][2]; /* options with their values, as they were given */
+    const char *program, *command; /* as they were called */
+    const char **given; /* options with their values, as they were given; [2 * n_given] */
     int n_given;
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
@@ -277,9 +279,9 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
     if (option->value && !(value && *value))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a value: %s %s", option->name, option->name,
                  option->value);
-    if (value && o->n_given < MAX_GIVEN) {
-        o->given[o->n_given][0] = option->name;
-        o->given[o->n_given++][1] = value;
+    if (value) {
+        o->given[2 * o->n_given] = option->name;
+        o->given[2 * o->n_given++ + 1] = value;
     }
     return take_option(ctx, o, option->name, value);
 }
@@ -287,6 +289,12 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
 static int read_words(struct brc_context *ctx, const struct command *c, char **words,
                       struct options *o)
 {
+    size_t n = 0;
+    while (words[n])
+        n++;
+    o->given = brc_alloc(ctx, 2 * n, sizeof *o->given);
+    if (!o->given)
+        return BRC_ERR_MEMORY;
     for (int i = 0; words[i]; i++)
         BRC_TRY(read_word(ctx, c, words, &i, o));
     bool needs_file = *c->operand && *c->operand != '[';
@@ -301,31 +309,6 @@ static int read_words(struct brc_context *ctx, const struct command *c, char **w
 }
 
 /* ---- commands ------------------------------------------------------------------------------ */
-
-/* Appends a word, quoted for the shell where it must be. */
-static void add_word(char *text, size_t size, const char *word)
-{
-    size_t used = strlen(text);
-    bool is_plain =
-        word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                          "_-+=./,:%@")] == '\0';
-    snprintf(text + used, size - used, is_plain ? " %s" : " '%s'", word);
-}
-
-/* The command that goes on with an interrupted one. */
-static void tell_resume(struct brc_context *ctx, const char *command, const struct options *o)
-{
-    char text[800];
-    snprintf(text, sizeof text, "breccia %s", command);
-    add_word(text, sizeof text, o->operand);
-    for (int i = 0; i < o->n_given; i++) {
-        add_word(text, sizeof text, o->given[i][0]);
-        add_word(text, sizeof text, o->given[i][1]);
-    }
-    add_word(text, sizeof text, "--resume");
-    size_t used = strlen(ctx->message);
-    snprintf(ctx->message + used, sizeof ctx->message - used, "; go on with: %s", text);
-}
 
 static int make_specimen(struct brc_context *ctx, const struct brc_job *job,
                          struct brc_specimen *specimen)
@@ -374,6 +357,7 @@ static int run_job(struct brc_context *ctx, const struct options *o, const struc
     else
         snprintf(dir, sizeof dir, "results/%s/%s", job->name, name);
     BRC_TRY(brc_run_check_folder(ctx, dir, job, o->is_resumed, o->is_forced));
+    brc_run_leave_on_signals();
     int code = make_specimen(ctx, job, &specimen);
     if (code == 0) {
         brc_run_hold_signals();
@@ -400,8 +384,6 @@ static int act_run(struct brc_context *ctx, const struct options *o)
     }
     brc_job_free(&job);
     brc_comm_end();
-    if (code == BRC_ERR_INTERRUPTED)
-        tell_resume(ctx, "run", o);
     return code;
 }
 
@@ -419,6 +401,7 @@ static int compare_job(struct brc_context *ctx, const struct options *o, const s
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
         snprintf(dir, sizeof dir, "results/%s", job->name);
+    brc_run_leave_on_signals();
     int code = make_specimen(ctx, job, &specimen);
     if (code == 0) {
         brc_run_hold_signals();
@@ -439,8 +422,6 @@ static int act_compare(struct brc_context *ctx, const struct options *o)
         brc_job_locate(ctx, &job);
     }
     brc_job_free(&job);
-    if (code == BRC_ERR_INTERRUPTED)
-        tell_resume(ctx, "compare", o);
     return code;
 }
 
@@ -481,8 +462,6 @@ static int act_converge(struct brc_context *ctx, const struct options *o)
         brc_job_locate(ctx, &job);
     }
     brc_job_free(&job);
-    if (code == BRC_ERR_INTERRUPTED)
-        tell_resume(ctx, "converge", o);
     return code;
 }
 
@@ -530,43 +509,72 @@ static int act_models(struct brc_context *ctx, const struct options *o)
     return 0;
 }
 
-static int act(struct brc_context *ctx, char **words)
+static int act(struct brc_context *ctx, char **words, struct options *o)
 {
     const char *names[N_COMMANDS + 2] = {"--help", "--version"};
-    struct options o = {0};
     char hint[128] = "";
     for (int i = 0; i < N_COMMANDS; i++) {
         names[i + 2] = commands[i].name;
         if (strcmp(words[0], commands[i].name) != 0)
             continue;
-        BRC_TRY(read_words(ctx, &commands[i], words + 1, &o));
-        ctx->quiet = o.is_quiet;
-        if (o.is_help)
+        o->command = commands[i].name;
+        BRC_TRY(read_words(ctx, &commands[i], words + 1, o));
+        ctx->quiet = o->is_quiet;
+        if (o->is_help)
             print_command_help(stdout, &commands[i]);
-        return o.is_help ? 0 : commands[i].act(ctx, &o);
+        return o->is_help ? 0 : commands[i].act(ctx, o);
     }
     BRC_FAIL(ctx, BRC_ERR_USAGE, "no command '%.60s'%s%s", words[0],
              suggest(words[0], names, N_COMMANDS + 2, hint), *hint ? "" : "; see breccia --help");
 }
 
+static int act_first(struct brc_context *ctx, char **words, struct options *o)
+{
+    if (!words[0]) {
+        print_help(stderr);
+        return BRC_ERR_USAGE;
+    }
+    if (strcmp(words[0], "--help") == 0 || strcmp(words[0], "-h") == 0)
+        print_help(stdout);
+    else if (strcmp(words[0], "--version") == 0)
+        puts("breccia " BRC_VERSION);
+    else
+        return act(ctx, words, o);
+    return 0;
+}
+
+/* The command that goes on with an interrupted one, or does it anew where nothing was saved. */
+static void tell_resume(FILE *out, int code, const struct options *o)
+{
+    bool is_saved = code == BRC_ERR_INTERRUPTED;
+    fputs(is_saved ? "; go on with:" : "; start again with:", out);
+    brc_console_word(out, o->program);
+    brc_console_word(out, o->command);
+    brc_console_word(out, o->operand);
+    for (int i = 0; i < 2 * o->n_given; i++)
+        brc_console_word(out, o->given[i]);
+    if (is_saved || o->is_resumed)
+        brc_console_word(out, "--resume");
+    else if (o->is_forced)
+        brc_console_word(out, "--force");
+}
+
 int main(int argc, char **argv)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
-    if (argc < 2) {
-        print_help(stderr);
-        return brc_error_exit_status(BRC_ERR_USAGE);
-    }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-        print_help(stdout);
-        return 0;
-    }
-    if (strcmp(argv[1], "--version") == 0) {
-        puts("breccia " BRC_VERSION);
-        return 0;
-    }
+    struct options o = {.program = argc > 0 ? argv[0] : "breccia"};
+    int code = brc_console_open(&ctx);
     signal(SIGXFSZ, SIG_IGN); /* a file over the allowed size is a failed write like any other */
-    int code = act(&ctx, argv + 1);
-    if (code != 0)
-        fprintf(stderr, "breccia: %s\n", ctx.message);
+    if (code == 0)
+        code = act_first(&ctx, argv + (argc > 0), &o);
+    int closed = brc_console_close(&ctx);
+    code = code != 0 ? code : closed;
+    if (*ctx.message) {
+        fprintf(stderr, "breccia: %s", ctx.message);
+        if (code == BRC_ERR_INTERRUPTED || code == BRC_ERR_NOT_BEGUN)
+            tell_resume(stderr, code, &o);
+        fputc('\n', stderr);
+    }
+    free(o.given);
     return brc_error_exit_status(code);
 }

@@ -28,7 +28,7 @@ void brc_numbers_free(struct brc_numbers *t)
 
 static int fail_at(const struct reader *r, const char *what)
 {
-    BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s: %.200s:%d: %s; expected '%s', finite numbers only", r->key,
+    BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s: %s:%d: %s; expected '%s', finite numbers only", r->key,
              r->path, r->line, what, r->form);
 }
 
@@ -93,9 +93,8 @@ int brc_numbers_read(struct brc_context *ctx, const char *key, const char *path,
         code = take_line(&r, line);
     }
     if (code == 0 && out->n == 0)
-        code =
-            brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                          "%s: '%.200s' holds no row; expected one '%s' a line", key, path, form);
+        code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                             "%s: '%s' holds no row; expected one '%s' a line", key, path, form);
     free(text);
     if (code != 0)
         brc_numbers_free(out);

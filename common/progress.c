@@ -87,7 +87,7 @@ static const char *time_left(const struct brc_progress_run *run, char *buffer, s
     char duration[32];
     double left = run->speed > 0 ? run->report.steps_left / run->speed : NAN;
     if (run->report.is_done)
-        snprintf(buffer, size, "done");
+        snprintf(buffer, size, run->report.is_stopped ? "stopped" : "done");
     else if (left < 360000)
         snprintf(buffer, size, "at most %s left",
                  brc_progress_duration(left, duration, sizeof duration));

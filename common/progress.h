@@ -16,6 +16,7 @@ struct brc_progress_report {
     double stress;     /* Pa */
     int64_t step, broken;
     bool is_done;
+    bool is_stopped; /* done before its end: by a signal or a failure */
 };
 
 enum { BRC_PROGRESS_MAX_RUNS = 16 };

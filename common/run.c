@@ -52,16 +52,40 @@ struct run {
 
 /* ---- signals ------------------------------------------------------------------------------- */
 
-/* Signals that end a run. They are blocked and looked for between steps, so that no handler and no
- * global state is needed. What the parent has told us to ignore (nohup) stays ignored. */
+/* Signals that end a run: of the terminal, of batch systems, of a reader that has gone. */
+static const int stop_signal[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGUSR1, SIGUSR2, SIGXCPU};
+enum { N_STOP_SIGNALS = sizeof stop_signal / sizeof stop_signal[0] };
+
+/* They are blocked and looked for between steps, so that no global state is needed. What the parent
+ * has told us to ignore (nohup) stays ignored. */
 static void stop_signals(sigset_t *set)
 {
-    static const int number[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
     sigemptyset(set);
-    for (size_t i = 0; i < sizeof number / sizeof number[0]; i++) {
+    for (int i = 0; i < N_STOP_SIGNALS; i++) {
         struct sigaction now;
-        if (sigaction(number[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN)
-            sigaddset(set, number[i]);
+        if (sigaction(stop_signal[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN)
+            sigaddset(set, stop_signal[i]);
+    }
+}
+
+static void leave(int number)
+{
+    static const char text[] =
+        "breccia: interrupted before the first step; nothing was saved, start again\n";
+    ssize_t n = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)n, (void)number;
+    _exit(brc_error_exit_status(BRC_ERR_NOT_BEGUN));
+}
+
+void brc_run_leave_on_signals(void)
+{
+    for (int i = 0; i < N_STOP_SIGNALS; i++) {
+        struct sigaction now;
+        if (stop_signal[i] == SIGPIPE || sigaction(stop_signal[i], NULL, &now) != 0 ||
+            now.sa_handler == SIG_IGN)
+            continue;
+        now = (struct sigaction){.sa_handler = leave};
+        sigaction(stop_signal[i], &now, NULL);
     }
 }
 
@@ -250,7 +274,7 @@ static size_t count_active(const struct brc_contacts *c)
     return n;
 }
 
-static void report(struct run *r, bool is_done)
+static void report(struct run *r, bool is_done, bool is_stopped)
 {
     const struct brc_rig *rig = &r->sim.rig;
     double most = (double)(r->sim.run.max_steps - r->sim.step);
@@ -260,7 +284,8 @@ static void report(struct run *r, bool is_done)
                                       .stress = rig->force / rig->section,
                                       .step = r->sim.step,
                                       .broken = (int64_t)r->sim.events.table.n,
-                                      .is_done = is_done};
+                                      .is_done = is_done,
+                                      .is_stopped = is_stopped};
     brc_progress_update(r->order->progress, r->order->progress_run, &now);
 }
 
@@ -305,7 +330,7 @@ static int step_loop(struct run *r)
         BRC_TRY(brc_blowup_energy(sim));
         r->counts.contact_steps += (double)r->counts.n_active;
         if (brc_progress_is_due(r->order->progress))
-            report(r, false);
+            report(r, false, false);
         if (save_is_due(r))
             BRC_TRY(save(r));
     }
@@ -417,7 +442,10 @@ static int draw(struct run *r)
                                  .folder = {"."}};
     BRC_TRY(brc_plot_broken(r->ctx, r->order->dir, &r->sim));
     BRC_TRY(brc_plot_cracks(r->ctx, r->order->dir, &r->sim, &job->output));
-    return job->output.plots ? brc_plot_draw(r->ctx, r->order->dir, &runs, &job->output) : 0;
+    bool has_moved = r->sim.step > 0; /* else there is nothing to see */
+    return has_moved && job->output.plots
+               ? brc_plot_draw(r->ctx, r->order->dir, &runs, &job->output)
+               : 0;
 }
 
 static int write_results(struct run *r, struct brc_summary *out)
@@ -460,6 +488,19 @@ static int check_folder(const struct run *r)
     return brc_run_check_folder(r->ctx, o->dir, o->job, o->is_resumed, o->is_forced);
 }
 
+/* A log that a full disk has cut is a failure, unless there is another. */
+static int close_log(struct run *r, int code)
+{
+    if (!r->log)
+        return code;
+    bool has_failed = ferror(r->log);
+    has_failed = fclose(r->log) != 0 || has_failed;
+    if (has_failed && code == 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s/log; is the disk full? The results are there",
+                 r->order->dir);
+    return code;
+}
+
 /* Everything that can be refused is refused before the folder is touched. */
 static int prepare(struct run *r)
 {
@@ -470,6 +511,10 @@ static int prepare(struct run *r)
         return BRC_ERR_MEMORY;
     BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_job_params(o->job, o->model), o->specimen,
                            &o->job->test, &o->job->run));
+    if (brc_run_is_stopped())
+        BRC_FAIL(r->ctx, BRC_ERR_NOT_BEGUN,
+                 "interrupted before the first step; nothing was saved, and %s is as it was",
+                 o->dir);
     BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
     BRC_TRY(brc_job_keep(r->ctx, o->job, o->model, o->dir, &r->case_text));
     BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->job, r->case_text, o->is_resumed));
@@ -516,19 +561,21 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
     struct run r = {.ctx = ctx, .order = order};
     brc_frames_init(&r.frames);
     snprintf(r.seed, sizeof r.seed, "%d", order->job->specimen.seed);
+    bool is_stopped = false;
     int code = prepare(&r);
     if (code == 0) {
-        report(&r, false);
+        report(&r, false, false);
         code = step_loop(&r);
         if (code != 0)
             keep_traces(&r);
         else
             code = write_results(&r, out);
-        report(&r, true);
+        is_stopped = code == 0 && strcmp(r.ended_by, "signal") == 0;
+        report(&r, true, is_stopped || code != 0);
     }
     if (code == 0)
         code = judge_energy(&r, out);
-    if (code == 0 && strcmp(r.ended_by, "signal") == 0)
+    if (is_stopped)
         code = brc_error_set(ctx, BRC_ERR_INTERRUPTED, __FILE__, __LINE__,
                              "interrupted at step %" PRId64 "; the state is saved in %s",
                              r.sim.step, order->dir);
@@ -536,7 +583,5 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
     brc_frames_free(&r.frames);
     free(r.case_text);
     free(r.parameters);
-    if (r.log)
-        fclose(r.log);
-    return code;
+    return close_log(&r, code);
 }

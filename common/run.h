@@ -19,7 +19,8 @@ struct brc_run_order {
 
 /* Runs to the end of the test. Writes to dir: case.yaml, log, state.h5, curve.csv, events.csv,
  * broken.csv, summary.json, and the plots. A signal that was held (brc_run_hold_signals) saves the
- * state and ends in BRC_ERR_INTERRUPTED; curves are written after any failure of a started run. */
+ * state and ends in BRC_ERR_INTERRUPTED, before the first step in BRC_ERR_NOT_BEGUN; curves are
+ * written after any failure of a started run. */
 int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out);
 
 /* dir/name in path; a longer one is BRC_ERR_INPUT. */
@@ -53,8 +54,12 @@ int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc
  * then. */
 int brc_run_remove_results(struct brc_context *ctx, const char *dir);
 int brc_run_remove(struct brc_context *ctx, const char *dir);
-/* From now on SIGINT, SIGTERM, SIGHUP and a lost reader wait: each run of the process saves its
- * state and ends after the present step. */
+/* From now on SIGINT, SIGTERM, SIGHUP, and the warnings of batch systems, SIGUSR1, SIGUSR2 and
+ * SIGXCPU, end the process at once, in words and with the status of an interruption: there is
+ * nothing to save yet. */
+void brc_run_leave_on_signals(void);
+/* From now on those signals and a lost reader wait: each run of the process saves its state and
+ * ends after the present step. */
 void brc_run_hold_signals(void);
 bool brc_run_is_stopped(void);
 /* Makes a folder and those above it. */

@@ -109,7 +109,7 @@ static int check_points(struct brc_context *ctx, const char *path, const struct 
         place[i].line = rows->line[i];
         if (rows->width == 4 && row[3] < 0)
             code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                                 "specimen.points: %.200s:%d: the radius is %g m; allowed [0, inf)",
+                                 "specimen.points: %s:%d: the radius is %g m; allowed [0, inf)",
                                  path, rows->line[i], row[3]);
     }
     if (code == 0)
@@ -118,7 +118,7 @@ static int check_points(struct brc_context *ctx, const char *path, const struct 
         const struct place *p = &place[i - 1], *q = &place[i];
         if (p->x[0] == q->x[0] && p->x[1] == q->x[1] && p->x[2] == q->x[2])
             code = brc_error_set(ctx, BRC_ERR_GEOMETRY, __FILE__, __LINE__,
-                                 "specimen.points: %.200s:%d: the seed coincides with that of line "
+                                 "specimen.points: %s:%d: the seed coincides with that of line "
                                  "%d at (%g, %g, %g) m; remove or move one of them",
                                  path, q->line, p->line, q->x[0], q->x[1], q->x[2]);
     }

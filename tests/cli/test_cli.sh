@@ -127,7 +127,7 @@ done
 kill -TERM $!
 wait $!
 [ $? -eq 7 ] || { echo "FAILED: a stopped run does not end with 7"; failures=$((failures + 1)); }
-grep -q "go on with: breccia run case.yaml --set test.rate=1e-8s-1 -o stopped --resume" stopped.txt ||
+grep -qF "go on with: $breccia run case.yaml --set test.rate=1e-8s-1 -o stopped --resume" stopped.txt ||
     { echo "FAILED: a stopped run does not say how to go on"; cat stopped.txt; failures=$((failures + 1)); }
 expect 0 "results in stopped" "$breccia" run case.yaml $slow -o stopped --resume \
     --set test.strain_max=1e-6

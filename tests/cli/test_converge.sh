@@ -88,7 +88,7 @@ done
 kill -TERM $!
 wait $!
 [ $? -eq 7 ] || fail "a stopped ladder does not end with 7"
-grep -q -- "go on with: breccia converge case.yaml --observable E .*-o part --resume" stopped.txt ||
+grep -q -- "go on with: $breccia converge case.yaml --observable E .*-o part --resume" stopped.txt ||
     { fail "a stopped ladder does not say how to go on"; cat stopped.txt; }
 head -c -20 part/converge_runs.csv >cut && cp cut part/converge_runs.csv
 expect 0 "results in part" $ladder -o part --resume
