@@ -52,7 +52,9 @@ TMPDIR=$folder/empty all_commands somewhere
 export -f all_commands bare good fail
 export breccia failures
 cat >sealed.sh <<'END'
+exec 9<"$breccia" # the program may lie below /tmp itself
 mount -t tmpfs -o ro none /tmp || exit 99
+breccia=/proc/self/fd/9
 unset TMPDIR
 all_commands results
 exit $failures
