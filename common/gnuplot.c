@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -62,6 +63,8 @@ static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *scr
         sigset_t none; /* the run may hold back signals */
         sigemptyset(&none);
         sigprocmask(SIG_SETMASK, &none, NULL);
+        /* without a locale gnuplot 6 complains of `set encoding utf8` */
+        setenv("LC_ALL", "C.UTF-8", 1);
         if (chdir(dir) == 0 && freopen("gnuplot.log", "a", stderr))
             execlp("gnuplot", "gnuplot", script, (char *)NULL);
         _exit(127);

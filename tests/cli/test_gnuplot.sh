@@ -17,7 +17,7 @@ fail() {
 # the text of an SVG picture that the script DIR/NAME.gp draws, with its characters restored
 words_of() {
     sed 's/pngcairo/svg/; s/\.png/.svg/' "$1/$2.gp" >"$1/$2.svg.gp"
-    (cd "$1" && gnuplot "$2.svg.gp" 2>>gnuplot.log)
+    (cd "$1" && LC_ALL=C.UTF-8 gnuplot "$2.svg.gp" 2>>gnuplot.log)
     sed 's/&lt;/</g; s/&gt;/>/g; s/&amp;/\&/g' "$1/$2.svg"
 }
 
