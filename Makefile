@@ -17,7 +17,7 @@ endif
 
 # --- sources ---------------------------------------------------------------------------------------
 MODELS       := $(filter-out common calib tests cases docs results,$(patsubst %/model.c,%,$(sort $(wildcard */model.c))))
-LIB_SOURCES  := $(sort $(filter-out common/main.c,$(wildcard common/*.c common/*.cpp calib/*.c $(addsuffix /*.c,$(MODELS)))))
+LIB_SOURCES  := $(sort $(wildcard common/*/*.c common/*/*.cpp calib/*.c $(addsuffix /*.c,$(MODELS))))
 # the slow ones first, so that the cores stay busy to the end
 TEST_FOLDERS := $(addprefix tests/,golden determinism converge model cli unit)
 TEST_SOURCES := $(foreach d,$(TEST_FOLDERS),$(sort $(wildcard $d/test_*.c)))
@@ -113,7 +113,7 @@ $(BUILD)/obj/%.cpp.o: %.cpp $(BUILD)/flags
 	@mkdir -p $(@D)
 	@echo "c++  $<"
 	@$(CXX) $(CXXFLAGS_ALL) -MMD -MP -c $< -o $@
-$(BUILD)/obj/common/registry.c.o: $(BUILD)/registry_list.h
+$(BUILD)/obj/common/engine/registry.c.o: $(BUILD)/registry_list.h
 # loops that are compiled for each instruction set
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_release := -O3 -g
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_bare := -O3 -g -DBRC_BARE
@@ -144,7 +144,7 @@ ALL_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES) $(AID_SOURCES) $(SAN_SOURCES) $(TE
 
 # --- installing ------------------------------------------------------------------------------------
 .PHONY: install uninstall
-VERSION := $(shell sed -n 's/^.define BRC_VERSION "\(.*\)"/\1/p' common/brc.h)
+VERSION := $(shell sed -n 's/^.define BRC_VERSION "\(.*\)"/\1/p' common/base/brc.h)
 # before 1.0 each minor version may change the interface
 SONAME  := libbreccia.so.$(word 1,$(subst ., ,$(VERSION))).$(word 2,$(subst ., ,$(VERSION)))
 PREFIX  ?= /usr/local
@@ -154,14 +154,14 @@ INCLUDEDIR ?= $(PREFIX)/include
 DATADIR ?= $(PREFIX)/share
 DOCDIR  ?= $(DATADIR)/doc/breccia
 # of the tessellation and the packing alone
-PUBLIC_HEADERS := $(filter-out common/tess_cgal.h common/packing_cache.h common/lanes.h common/wide.h common/integrate_loops.h,$(wildcard common/*.h calib/*.h))
+PUBLIC_HEADERS := $(filter-out common/specimen/tess_cgal.h common/specimen/packing_cache.h common/base/lanes.h common/engine/integrate_loops.h,$(wildcard common/*/*.h calib/*.h))
 DOCUMENTS := README.md LICENSE $(wildcard docs/*.md) docs/example_library.c
 COMPLETION := $(DATADIR)/bash-completion/completions/breccia
 $(BUILD)/breccia.1: docs/make-man $(BUILD)/breccia
 	@$^ >$@
 $(BUILD)/completion: docs/make-completion $(BUILD)/breccia
 	@$^ >$@
-$(BUILD)/breccia.pc: $(BUILD)/flags common/brc.h Makefile FORCE
+$(BUILD)/breccia.pc: $(BUILD)/flags common/base/brc.h Makefile FORCE
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' 'Name: breccia' \
 		'Description: fracture of bonded-grain rock, contact models side by side' 'Version: $(VERSION)' \
 		'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lbreccia' \
@@ -176,7 +176,7 @@ install: all $(BUILD)/breccia.1 $(BUILD)/completion $(BUILD)/breccia.pc ## into 
 	@ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libbreccia.so
 	@install -m 644 $(BUILD)/breccia.pc $(DESTDIR)$(LIBDIR)/pkgconfig/breccia.pc
 	@for header in $(PUBLIC_HEADERS); do \
-		sed 's,^#include "\(common\|calib\)/,#include ",' $$header >$(DESTDIR)$(INCLUDEDIR)/breccia/$${header##*/}; \
+		sed 's,^#include "\(common/[a-z]*\|calib\)/,#include ",' $$header >$(DESTDIR)$(INCLUDEDIR)/breccia/$${header##*/}; \
 	done; chmod 644 $(DESTDIR)$(INCLUDEDIR)/breccia/*.h
 	@install -m 644 $(BUILD)/breccia.1 $(DESTDIR)$(DATADIR)/man/man1/breccia.1
 	@install -m 644 $(BUILD)/completion $(DESTDIR)$(COMPLETION)
@@ -226,7 +226,7 @@ bench: all $(BENCH_PROGRAMS) build/bench/tools ## times of the hot loops, costs 
 
 # --- lint: each check leaves a mark, so that only what has changed is checked again ----------------
 LINT_SOURCES := $(LIB_SOURCES) $(MAIN_SOURCES)
-LINT_FILES   := $(sort $(wildcard $(foreach d,common calib $(MODELS) tests tests/*,$(addprefix $d/*.,c cpp h))))
+LINT_FILES   := $(sort $(wildcard $(foreach d,common common/* calib $(MODELS) tests tests/*,$(addprefix $d/*.,c cpp h))))
 LINT_HEADERS := $(filter %.h,$(LINT_FILES))
 # the analyzer needs minutes for the headers of CGAL
 TIDY_CXX     := -clang-analyzer-*

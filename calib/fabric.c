@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calib/fabric.h"
-#include "common/erosion.h"
-#include "common/vec.h"
+#include "common/specimen/erosion.h"
+#include "common/geometry/vec.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef CALIB_FABRIC_H
 #define CALIB_FABRIC_H
 
-#include "common/facets.h"
+#include "common/specimen/facets.h"
 
 /* Which facets and areas count. */
 struct calib_fabric_rules {

@@ -5,7 +5,7 @@
 #define CALIB_OBJECTIVE_H
 
 #include "calib/target.h"
-#include "common/output.h"
+#include "common/output/output.h"
 
 /* One free parameter: a key of the model's list, with bounds in SI. */
 struct calib_variable {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calib/simulate.h"
-#include "common/run.h"
+#include "common/runs/run.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #define CALIB_SIMULATE_H
 
 #include "calib/objective.h"
-#include "common/specimen.h"
+#include "common/specimen/specimen.h"
 
 enum { CALIB_N_TESTS = 3, CALIB_MAX_VARIABLES = 32 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calib/target.h"
-#include "common/casefile.h"
+#include "common/input/casefile.h"
 
 #include <stdio.h>
 #include <string.h>

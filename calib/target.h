@@ -4,7 +4,7 @@
 #ifndef CALIB_TARGET_H
 #define CALIB_TARGET_H
 
-#include "common/rig.h"
+#include "common/engine/rig.h"
 
 /* Code, section in the file, SI unit, range, test that measures it (-1: none), result in the
  * summary of that test, meaning. */

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The command line. */
-#include "comm.h"
-#include "compare.h"
-#include "console.h"
-#include "converge.h"
-#include "export.h"
-#include "info.h"
-#include "run.h"
+#include "common/parallel/comm.h"
+#include "common/runs/compare.h"
+#include "common/base/console.h"
+#include "common/runs/converge.h"
+#include "common/runs/export.h"
+#include "common/output/info.h"
+#include "common/runs/run.h"
 
 #include <limits.h>
 #include <signal.h>

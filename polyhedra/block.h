@@ -7,8 +7,8 @@
 
 #include "features.h"
 
-#include "common/lanes.h"
-#include "common/sim.h"
+#include "common/base/lanes.h"
+#include "common/engine/sim.h"
 
 #include <string.h>
 

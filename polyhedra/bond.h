@@ -5,7 +5,7 @@
 #ifndef POLY_BOND_H
 #define POLY_BOND_H
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 #include <stdbool.h>
 

@@ -7,7 +7,7 @@
 
 #include "shape.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 /* Edges count as parallel when the squared sine of their angle is below this. */
 #define POLY_PARALLEL 1e-12

@@ -2,8 +2,8 @@
 /* The shape operation: cells become eroded cores with the mass of the whole cell. */
 #include "poly.h"
 
-#include "common/erosion.h"
-#include "common/grow.h"
+#include "common/specimen/erosion.h"
+#include "common/base/grow.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly.h"
 
-#include "common/oblique.h"
-#include "common/simd.h"
+#include "common/specimen/oblique.h"
+#include "common/base/simd.h"
 
 #include <stdio.h>
 #include <stdlib.h>

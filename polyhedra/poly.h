@@ -8,7 +8,7 @@
 #include "contact.h"
 #include "features.h"
 
-#include "common/sim.h"
+#include "common/engine/sim.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "shape.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>

@@ -5,7 +5,7 @@
 #ifndef POLY_SHAPE_H
 #define POLY_SHAPE_H
 
-#include "common/error.h"
+#include "common/base/error.h"
 
 /* What every step reads is kept apart from what only lists and walks read: it must stay in cache.
  */

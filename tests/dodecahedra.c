@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "dodecahedra.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 #include "tests/near.h"
 
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef BRC_TESTS_DODECAHEDRA_H
 #define BRC_TESTS_DODECAHEDRA_H
 
-#include "common/convex.h"
+#include "common/geometry/convex.h"
 
 struct dodecahedra {
     double radius, vertex[20][3], x[512][3], q[512][4];

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/fixture.h"
 
-#include "common/grid.h"
-#include "common/integrate.h"
-#include "common/job.h"
+#include "common/geometry/grid.h"
+#include "common/engine/integrate.h"
+#include "common/runs/job.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -320,7 +320,7 @@ void fixture_list(struct fixture *f)
         s->bodies.travel[i] += 100 * s->bodies.reach[i];
     CHECK_OK(&f->ctx, brc_grid_pairs(&f->ctx, s->bodies.x, s->bodies.reach, s->bodies.n_grains,
                                      s->skin, &grains));
-    CHECK_OK(&f->ctx, brc_grid_platens(&f->ctx, s, &platens));
+    CHECK_OK(&f->ctx, brc_sim_near_platens(s, &platens));
     CHECK_OK(&f->ctx, s->model.pairs(s, s->state, &grains, &platens));
     brc_candidates_free(&grains);
     brc_candidates_free(&platens);

@@ -4,8 +4,8 @@
 #ifndef BRC_TESTS_FIXTURE_H
 #define BRC_TESTS_FIXTURE_H
 
-#include "common/sim.h"
-#include "common/vec.h"
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
 #include "tests/near.h"
 
 extern const struct brc_model brc_model_null;

@@ -3,7 +3,7 @@
 #ifndef BRC_TESTS_FUZZ_AID_H
 #define BRC_TESTS_FUZZ_AID_H
 
-#include "common/error.h"
+#include "common/base/error.h"
 
 /* Ends the program where a condition does not hold, so that a fuzzer keeps the input. */
 #define FUZZ_MUST(condition) \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/fuzz.h"
 
-#include "common/job.h"
+#include "common/runs/job.h"
 #include "tests/fuzz_aid.h"
 
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/fuzz.h"
 
-#include "common/numbers.h"
-#include "common/seeds.h"
-#include "common/vec.h"
+#include "common/input/numbers.h"
+#include "common/specimen/seeds.h"
+#include "common/geometry/vec.h"
 #include "tests/fuzz_aid.h"
 
 #include <stdio.h>

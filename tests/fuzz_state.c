@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/fuzz.h"
 
-#include "common/h5.h"
-#include "common/io_h5.h"
-#include "common/job.h"
+#include "common/output/h5.h"
+#include "common/output/io_h5.h"
+#include "common/runs/job.h"
 #include "tests/fuzz_aid.h"
 
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #ifndef BRC_TESTS_NEAR_H
 #define BRC_TESTS_NEAR_H
 
-#include "common/error.h"
+#include "common/base/error.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_solids.h"
 
-#include "common/convex.h"
-#include "common/vec.h"
+#include "common/geometry/convex.h"
+#include "common/geometry/vec.h"
 
 static int add_convex(struct brc_context *ctx, struct poly_shapes *shapes,
                       const struct brc_convex *c)

@@ -8,7 +8,7 @@
 #ifndef VGCM_CONTACT_H
 #define VGCM_CONTACT_H
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 #include "vgcm/vgcm.h"
 
 /* Four rows that are treated side by side, each operation below for all at once. Where there are

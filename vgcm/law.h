@@ -10,7 +10,7 @@
 #ifndef VGCM_LAW_H
 #define VGCM_LAW_H
 
-#include "common/lanes.h"
+#include "common/base/lanes.h"
 
 /* for functions that are called with literal flags: the loops shed what the flags turn off */
 #define VGCM_INLINE BRC_LANES_INLINE
@@ -289,8 +289,8 @@ VGCM_INLINE void vgcm_lanes_account_broken(brc_mask was, brc_mask is, brc_lanes 
     e->shear += area * brc_lanes_pick(is, none, stored[1] - brc_lanes_pick(was, none, old[1]));
 }
 
-/* Energies of a step, by the trapezoid rule for each force, see common/ledger.h. Returns what
- * points that were whole have lost [J]. */
+/* Energies of a step, by the trapezoid rule for each force, see common/engine/ledger.h. Returns
+ * what points that were whole have lost [J]. */
 VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
                                          const brc_lanes bond[VGCM_N_BOND], int flags,
                                          brc_lanes area, const struct vgcm_point_lanes *p,

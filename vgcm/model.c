@@ -2,7 +2,7 @@
 /* The table of the VGCM-3D model. */
 #include "vgcm/vgcm.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vgcm/points.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 int vgcm_points_count(enum vgcm_points_rule rule, size_t n)
 {

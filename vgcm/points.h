@@ -3,7 +3,7 @@
 #ifndef VGCM_POINTS_H
 #define VGCM_POINTS_H
 
-#include "common/facets.h"
+#include "common/specimen/facets.h"
 
 enum vgcm_points_rule {
     VGCM_POINTS_PAPER, /* vertices and centroid; a third of each triangle to its corners */

@@ -2,7 +2,7 @@
 /* Which pairs interact, and the rows of new contacts. */
 #include "vgcm/vgcm.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 #include "vgcm/points.h"
 
 #include <stdlib.h>

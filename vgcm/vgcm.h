@@ -4,8 +4,8 @@
 #ifndef VGCM_VGCM_H
 #define VGCM_VGCM_H
 
-#include "common/oblique.h"
-#include "common/sim.h"
+#include "common/specimen/oblique.h"
+#include "common/engine/sim.h"
 #include "vgcm/law.h"
 
 enum vgcm_softening { VGCM_SOFTENING_NONE, VGCM_SOFTENING_LINEAR, VGCM_SOFTENING_BILINEAR };

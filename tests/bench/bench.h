@@ -4,7 +4,7 @@
 #ifndef BRC_TESTS_BENCH_H
 #define BRC_TESTS_BENCH_H
 
-#include "common/sim.h"
+#include "common/engine/sim.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
  * and the part of a run that goes into lists. */
 #include "bench.h"
 
-#include "common/grid.h"
+#include "common/geometry/grid.h"
 #include "polyhedra/poly.h"
 #include "tests/dodecahedra.h"
 #include "tests/fixture.h"
@@ -221,7 +221,7 @@ static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool
         const struct brc_bodies *b = &sim->bodies;
         must(sim->ctx, brc_grid_pairs(sim->ctx, (const double(*)[3])b->x, b->reach, b->n_grains,
                                       sim->skin, &grains));
-        must(sim->ctx, brc_grid_platens(sim->ctx, sim, &platens));
+        must(sim->ctx, brc_sim_near_platens(sim, &platens));
         must(sim->ctx, sim->model.pairs(sim, sim->state, &grains, &platens));
     }
     double time = cpu_seconds() - begin;

@@ -2,8 +2,8 @@
 /* Torque-free asymmetric top, moments 1, 2, 3, started at omega = (0.3, 1, 0.2) in its principal
  * axes, which are the space axes at the start. The reference state at t = 20 was computed with a
  * high-order method and extended precision; it is quoted to 1e-8. */
-#include "common/integrate.h"
-#include "common/vec.h"
+#include "common/engine/integrate.h"
+#include "common/geometry/vec.h"
 #include "tests/near.h"
 
 static const double MOMENT[3] = {1, 2, 3};

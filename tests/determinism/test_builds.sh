@@ -13,7 +13,7 @@ libs=$(sed -n 's/^DEPS_LIBS := //p' build/deps.mk)
 # a build without optimisation and with sanitizers takes minutes, and says no more about bits
 case $BUILD in */san) echo "not under sanitizers"; exit 0 ;; esac
 models=$(ls -- */model.c | sed 's,/model.c,,')
-sources=$(ls common/*.c tests/fixture.c tests/null/model.c tests/determinism/test_repeat.c |
+sources=$(ls common/*/*.c tests/fixture.c tests/null/model.c tests/determinism/test_repeat.c |
     grep -v -e main.c -e io_h5.c -e comm_mpi.c)
 for model in $models; do
     sources="$sources $(ls "$model"/*.c)"

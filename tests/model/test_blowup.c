@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A blow-up of either model names step, body, contact and what to change; nothing stable is one. */
-#include "common/blowup.h"
+#include "common/engine/blowup.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

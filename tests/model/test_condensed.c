@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pairs of polyhedra with condensed springs against the literal ones. */
-#include "common/io_h5.h"
+#include "common/output/io_h5.h"
 #include "polyhedra/poly.h"
 #include "tests/fixture.h"
 

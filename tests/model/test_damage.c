@@ -3,10 +3,10 @@
  * put in between, reading ends in a message (a tessellation may still be a good one). `make check`
  * does it some hundred times a kind, under the sanitizers it is thousands; DAMAGE_N sets the number
  * and DAMAGE_SEED the changes. */
-#include "common/frames.h"
-#include "common/info.h"
-#include "common/io_h5.h"
-#include "common/neper.h"
+#include "common/output/frames.h"
+#include "common/output/info.h"
+#include "common/output/io_h5.h"
+#include "common/specimen/neper.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

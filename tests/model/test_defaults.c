@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rock of the defaults: what a case without a section for its model gives, at any grain size.
  */
-#include "common/job.h"
+#include "common/runs/job.h"
 #include "polyhedra/poly.h"
 #include "tests/fixture.h"
 #include "vgcm/vgcm.h"

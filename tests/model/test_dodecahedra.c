@@ -6,7 +6,7 @@
 #include "tests/near.h"
 #include "tests/poly_solids.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Frames: what the meshes hold against the state they are made of, and when one is due. */
-#include "common/frame_mesh.h"
-#include "common/frames.h"
-#include "common/vtk.h"
+#include "common/output/frame_mesh.h"
+#include "common/output/frames.h"
+#include "common/output/vtk.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
 /* Facets that are not normal to the line of their grains' centres: what vgcm makes of them. */
 #include "tests/fixture.h"
 
-#include "common/oblique.h"
+#include "common/specimen/oblique.h"
 #include "vgcm/vgcm.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A disc that has been split is in pieces in both models, though not every point of the crack is
  * gone. */
-#include "common/fragments.h"
+#include "common/engine/fragments.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run that is saved, loaded and continued has the same bits as one that never stopped. */
-#include "common/io_h5.h"
+#include "common/output/io_h5.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loading: which rates a test goes through. */
-#include "common/integrate.h"
-#include "common/stability.h"
+#include "common/engine/integrate.h"
+#include "common/engine/stability.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

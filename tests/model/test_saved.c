@@ -2,7 +2,7 @@
 /* Each field that a saved state has holds something in some run of its model. */
 #include "tests/fixture.h"
 
-#include "common/state.h"
+#include "common/engine/state.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A signal that comes between the specimen and the first step: nothing is claimed to be saved, no
  * folder is made or touched, no pictures are drawn. */
-#include "common/compare.h"
-#include "common/run.h"
+#include "common/runs/compare.h"
+#include "common/runs/run.h"
 #include "tests/near.h"
 
 #include <signal.h>

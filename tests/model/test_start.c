@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a test begins: the field of velocities, and the scaled masses that carry it. */
-#include "common/integrate.h"
+#include "common/engine/integrate.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

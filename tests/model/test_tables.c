@@ -2,9 +2,9 @@
 /* Exported tables, read as any program reads CSV (RFC 4180): as many fields a record as the header
  * has, the names and units of the fields, and the values of the state to the bit. Fields that are
  * not saved are not exported. */
-#include "common/export.h"
-#include "common/io_h5.h"
-#include "common/output.h"
+#include "common/runs/export.h"
+#include "common/output/io_h5.h"
+#include "common/output/output.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

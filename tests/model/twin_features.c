@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "twin_features.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef BRC_TESTS_TWIN_FEATURES_H
 #define BRC_TESTS_TWIN_FEATURES_H
 
-#include "common/convex.h"
+#include "common/geometry/convex.h"
 
 /* A core in space: faces as vertex loops, edges as vertex pairs. */
 struct twin_core {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The do-nothing model: copy this folder to begin a model, see docs/add-a-model.md. */
-#include "common/sim.h"
-#include "common/vec.h"
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
 
 static int null_shape(struct brc_sim *sim, void *state)
 {

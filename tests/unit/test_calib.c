@@ -3,7 +3,7 @@
  * the objective with formulas in place of simulations. */
 #include "calib/guess.h"
 #include "calib/objective.h"
-#include "common/model.h"
+#include "common/engine/model.h"
 #include "tests/near.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what is read, and the place and text of every error. */
-#include "common/casefile.h"
+#include "common/input/casefile.h"
 #include "tests/near.h"
 
 #include <stdlib.h>

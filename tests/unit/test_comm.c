@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Started as it is: one process. test_comm.sh starts the same program on two ranks. */
-#include "common/comm.h"
+#include "common/parallel/comm.h"
 #include "tests/near.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/contacts.h"
+#include "common/engine/contacts.h"
 #include "tests/near.h"
 
 enum { N_BODIES = 40 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The statistics of a ladder on numbers whose answer is known by hand, and the judgement of a study
  * that is made up: reference, uncertainty, cheapest settings. */
-#include "common/converge.h"
+#include "common/runs/converge.h"
 #include "tests/near.h"
 
 #include <stdio.h>

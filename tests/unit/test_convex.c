@@ -2,8 +2,8 @@
 /* Clipping of convex polyhedra against closed forms and random cuts. */
 #include "tests/near.h"
 
-#include "common/convex.h"
-#include "common/vec.h"
+#include "common/geometry/convex.h"
+#include "common/geometry/vec.h"
 
 #include <stdlib.h>
 

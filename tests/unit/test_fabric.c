@@ -2,7 +2,7 @@
 /* Sums over facets that the first guess needs: closed forms on cubes, bounds and identities on
  * random cells. */
 #include "calib/fabric.h"
-#include "common/tess.h"
+#include "common/specimen/tess.h"
 #include "tests/near.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/fragments.h"
+#include "common/engine/fragments.h"
 #include "tests/near.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The broad phase against all pairs. */
-#include "common/grid.h"
-#include "common/sim.h"
-#include "common/vec.h"
+#include "common/geometry/grid.h"
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
 #include "tests/near.h"
 
 #include <stdlib.h>
@@ -145,7 +145,7 @@ static void platens_see_whom_they_may_touch(void **state)
     sim.rig.platen[1] = (struct brc_platen){.body = (int32_t)n + 1, .n = {0, 0, -1}};
     brc_set(b->x[n], 5, 5, -0.5);
     brc_set(b->x[n + 1], -5, 5, 0.5);
-    CHECK_OK(&t->ctx, brc_grid_platens(&t->ctx, &sim, &t->out));
+    CHECK_OK(&t->ctx, brc_sim_near_platens(&sim, &t->out));
     for (size_t i = 0; i < n; i++)
         for (int p = 0; p < 2; p++) {
             double height = p == 0 ? b->x[i][2] + 0.5 : 0.5 - b->x[i][2];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/h5.h"
-#include "common/io_h5.h"
-#include "common/seal.h"
+#include "common/output/h5.h"
+#include "common/output/io_h5.h"
+#include "common/output/seal.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

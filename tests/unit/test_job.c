@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A case as a whole: keys that others make meaningless, keys that bound each other, sections. */
-#include "common/applies.h"
+#include "common/runs/applies.h"
 #include "tests/near.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/ledger.h"
+#include "common/engine/ledger.h"
 #include "tests/near.h"
 
 static void balance_by_hand(void **state)

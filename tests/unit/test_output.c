@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/compare.h"
+#include "common/runs/compare.h"
 #include "tests/near.h"
 
 #include <ctype.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameter lists and units: quantities, ranges, choices, texts, and the messages of each error. */
-#include "common/params.h"
-#include "common/casefile.h"
-#include "common/rig.h"
-#include "common/sim.h"
-#include "common/units.h"
+#include "common/input/params.h"
+#include "common/input/casefile.h"
+#include "common/engine/rig.h"
+#include "common/engine/sim.h"
+#include "common/input/units.h"
 #include "tests/near.h"
 
 #include <stdlib.h>

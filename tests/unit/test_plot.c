@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/plot.h"
+#include "common/output/plot.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include "tests/near.h"
 #include "tests/poly_solids.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 enum { N_CORES = 12 };
 static struct poly_shapes shapes;

@@ -3,7 +3,7 @@
 #include "tests/near.h"
 #include "tests/poly_solids.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 
 static double edge_length(const struct poly_core *c, int32_t e)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/progress.h"
+#include "common/base/progress.h"
 #include "tests/near.h"
 
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 /* Specimens: shapes, grid, packing and its statistics, the cache on disk, bad input. */
 #include "tests/near.h"
 
-#include "common/fields.h"
-#include "common/specimen.h"
-#include "common/vec.h"
+#include "common/base/fields.h"
+#include "common/specimen/specimen.h"
+#include "common/geometry/vec.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest eigenfrequency of small spring systems against dense eigenvalues by GSL, and against
  * the closed form of a chain. */
-#include "common/sim.h"
-#include "common/vec.h"
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
 #include "tests/near.h"
 
 #include <gsl/gsl_eigen.h>

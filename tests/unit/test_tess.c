@@ -3,9 +3,9 @@
  */
 #include "tests/near.h"
 
-#include "common/complex.h"
-#include "common/tess.h"
-#include "common/vec.h"
+#include "common/specimen/complex.h"
+#include "common/specimen/tess.h"
+#include "common/geometry/vec.h"
 
 #include <stdlib.h>
 #include <time.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/brc.h"
-#include "common/vec.h"
+#include "common/base/brc.h"
+#include "common/geometry/vec.h"
 #include "tests/near.h"
 
 /* Results here are a handful of products of numbers of order one: a few units of 2.2e-16. */

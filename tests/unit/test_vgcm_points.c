@@ -2,7 +2,7 @@
 /* Interaction points: area, centroid and second moments of the facet. */
 #include "tests/near.h"
 
-#include "common/vec.h"
+#include "common/geometry/vec.h"
 #include "vgcm/points.h"
 
 enum { MOST = 64 };

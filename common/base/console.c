@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/base/console.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The wrong way round for 0 and 1: whoever reads or writes there is told. What is said on a closed
+ * standard error has no other place to go, and is dropped. open takes the lowest free number. */
+int brc_console_open(struct brc_context *ctx)
+{
+    static const int mode[] = {O_WRONLY, O_RDONLY, O_WRONLY};
+    for (int file = 0; file < 3; file++)
+        if (fcntl(file, F_GETFD) < 0 && open("/dev/null", mode[file]) != file)
+            BRC_FAIL(ctx, BRC_ERR_IO, "cannot open /dev/null in place of closed descriptor %d: %s",
+                     file, strerror(errno));
+    return 0;
+}
+
+int brc_console_close(struct brc_context *ctx)
+{
+    bool has_failed = ferror(stdout);
+    errno = 0;
+    has_failed = fclose(stdout) != 0 || has_failed;
+    if (has_failed)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "cannot write all to standard output%s%s; what is written to files is there",
+                 errno ? ": " : "", errno ? strerror(errno) : "");
+    return 0;
+}
+
+void brc_console_word(FILE *out, const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "_-+=./,:%@";
+    fputc(' ', out);
+    if (*word && word[strspn(word, plain)] == '\0') {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (; *word; word++) {
+        if (*word == '\'')
+            fputs("'\\''", out);
+        else
+            fputc(*word, out);
+    }
+    fputc('\'', out);
+}

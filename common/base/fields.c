@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _DEFAULT_SOURCE /* for madvise; NOLINT(bugprone-reserved-identifier) */
+#include "common/base/fields.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+enum {
+    ALIGNMENT = 64,
+    ROWS = 4,      /* capacity is a multiple of it */
+    WAY = 4096,    /* addresses that differ by a multiple of it share their place in a cache */
+    SKEW = 5 * 64, /* so columns begin this much apart modulo WAY */
+    LARGE_PAGE = 1 << 21 /* blocks of at least this size ask for pages of it */
+};
+
+size_t brc_type_size(enum brc_type type)
+{
+    switch (type) {
+    case BRC_F64:
+    case BRC_I64:
+        return 8;
+    case BRC_I32:
+        return 4;
+    case BRC_U8:
+        return 1;
+    }
+    return 0;
+}
+
+size_t brc_field_size(const struct brc_field *f)
+{
+    return brc_type_size(f->type) * (size_t)f->width;
+}
+
+static void **column_slot(const struct brc_table *t, int field)
+{
+    return (void **)((char *)t->columns + t->set.fields[field].offset);
+}
+
+void *brc_table_column(const struct brc_table *t, int field)
+{
+    return *column_slot(t, field);
+}
+
+void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset set, void *columns)
+{
+    *t = (struct brc_table){.name = name, .set = set, .columns = columns};
+}
+
+static size_t round_up(size_t n, size_t unit)
+{
+    return (n + unit - 1) / unit * unit;
+}
+
+/* One block for all columns of cap rows, and where in it each begins. */
+static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t cap,
+                      size_t *offset)
+{
+    size_t bytes = 0, row_size = 0;
+    void *block = NULL;
+    for (int i = 0; i < t->set.n; i++)
+        row_size += brc_field_size(&t->set.fields[i]);
+    if (row_size == 0 || cap <= PTRDIFF_MAX / 2 / row_size) {
+        for (int i = 0; i < t->set.n; i++) {
+            size_t skew = cap * row_size < WAY ? 0 : (size_t)i * SKEW % WAY;
+            offset[i] = round_up(bytes, skew > 0 ? WAY : ALIGNMENT) + skew;
+            bytes = offset[i] + cap * brc_field_size(&t->set.fields[i]);
+        }
+        size_t unit = bytes < LARGE_PAGE ? ALIGNMENT : LARGE_PAGE;
+        bytes = round_up(bytes > 0 ? bytes : 1, unit);
+        block = aligned_alloc(unit, bytes);
+        if (block && unit == LARGE_PAGE)
+            (void)madvise(block, bytes, MADV_HUGEPAGE); /* a wish: pages may stay small */
+    }
+    if (!block)
+        brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
+                      "out of memory: %zu rows of %zu bytes; use fewer grains or a larger machine",
+                      cap, row_size);
+    return block;
+}
+
+/* Allocates new columns of cap rows, filled by from (see brc_table_gather) or by the old rows in
+ * order when from is NULL; either all columns change or none. */
+static int replace_columns(struct brc_context *ctx, struct brc_table *t, const size_t *from,
+                           size_t n, size_t cap)
+{
+    size_t filled = round_up(n, ROWS);
+    cap = round_up(cap, ROWS);
+    size_t *offset = brc_alloc(ctx, (size_t)t->set.n, sizeof *offset);
+    char *block = offset ? allocate(ctx, t, cap, offset) : NULL;
+    if (!block) {
+        free(offset);
+        return BRC_ERR_MEMORY;
+    }
+    for (int i = 0; i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        char *to = block + offset[i];
+        const char *old = brc_table_column(t, i);
+        size_t kept = t->n < n ? t->n : n;
+        if (!from && kept > 0)
+            memcpy(to, old, kept * size);
+        if (!from)
+            memset(to + kept * size, 0, (cap - kept) * size);
+        for (size_t row = 0; from && row < n; row++) {
+            if (from[row] == BRC_NEW_ROW)
+                memset(to + row * size, 0, size);
+            else
+                memcpy(to + row * size, old + from[row] * size, size);
+        }
+        if (from)
+            memset(to + n * size, 0, (filled - n) * size);
+    }
+    for (int i = 0; i < t->set.n; i++)
+        *column_slot(t, i) = block + offset[i];
+    free(offset);
+    free(t->block);
+    t->block = block;
+    t->n = n;
+    t->cap = cap;
+    return 0;
+}
+
+int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
+{
+    if (n > t->cap) {
+        size_t cap = t->cap > 0 ? t->cap : 16;
+        while (cap < n)
+            cap = cap <= SIZE_MAX / 2 ? 2 * cap : n;
+        return replace_columns(ctx, t, NULL, n, cap);
+    }
+    for (int i = 0; n > t->n && i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        memset((char *)brc_table_column(t, i) + t->n * size, 0, (round_up(n, ROWS) - t->n) * size);
+    }
+    t->n = n;
+    return 0;
+}
+
+/* The rows that stay keep their order. */
+static bool is_ascending(const size_t *from, size_t n)
+{
+    size_t least = 0;
+    for (size_t row = 0; row < n; row++) {
+        if (from[row] == BRC_NEW_ROW)
+            continue;
+        if (from[row] < least)
+            return false;
+        least = from[row] + 1;
+    }
+    return true;
+}
+
+/* Rows in ascending order move in the columns that are there: first those that move down, from the
+ * first one on, then those that move up, from the last one on. */
+static void gather_in_place(struct brc_table *t, const size_t *from, size_t n)
+{
+    for (int i = 0; i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        char *column = brc_table_column(t, i);
+        for (size_t row = 0; row < n; row++)
+            if (from[row] != BRC_NEW_ROW && from[row] > row)
+                memcpy(column + row * size, column + from[row] * size, size);
+        for (size_t row = n; row-- > 0;)
+            if (from[row] < row) /* no new row is */
+                memcpy(column + row * size, column + from[row] * size, size);
+        for (size_t row = 0; row < n; row++)
+            if (from[row] == BRC_NEW_ROW)
+                memset(column + row * size, 0, size);
+        memset(column + n * size, 0, (round_up(n, ROWS) - n) * size);
+    }
+    t->n = n;
+}
+
+int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t *from, size_t n)
+{
+    if (n <= t->cap && is_ascending(from, n)) {
+        gather_in_place(t, from, n);
+        return 0;
+    }
+    return replace_columns(ctx, t, from, n, n > t->cap ? n + n / 2 : t->cap);
+}
+
+void brc_table_free(struct brc_table *t)
+{
+    free(t->block);
+    t->block = NULL;
+    for (int i = 0; i < t->set.n; i++)
+        *column_slot(t, i) = NULL;
+    t->n = t->cap = 0;
+}
+
+uint64_t brc_hash_bytes(const void *data, size_t n, uint64_t seed)
+{
+    const unsigned char *bytes = data;
+    uint64_t hash = seed;
+    size_t i = 0;
+    for (; i + 8 <= n; i += 8) {
+        uint64_t word;
+        memcpy(&word, bytes + i, 8);
+        hash = (hash ^ word) * UINT64_C(0x100000001b3);
+        hash ^= hash >> 29; /* FNV alone never moves high bits down */
+    }
+    for (; i < n; i++)
+        hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+static bool is_named(const char *names, const char *name)
+{
+    size_t size = strlen(name);
+    for (const char *at = names; at && (at = strstr(at, name)); at += size) {
+        bool begins = at == names || at[-1] == ' ';
+        if (begins && (at[size] == ' ' || at[size] == '\0'))
+            return true;
+    }
+    return false;
+}
+
+void brc_table_leave_out(struct brc_table *t, const char *names)
+{
+    for (int i = 0; i < t->set.n && i < 64; i++)
+        if (is_named(names, t->set.fields[i].name))
+            t->left_out |= UINT64_C(1) << i;
+}
+
+bool brc_table_saves(const struct brc_table *t, int field)
+{
+    bool is_left_out = field < 64 && (t->left_out >> field & 1);
+    return (t->set.fields[field].flags & BRC_STATE) && !is_left_out;
+}
+
+uint64_t brc_table_hash(const struct brc_table *t, uint64_t seed)
+{
+    uint64_t hash = brc_hash_bytes(&t->n, sizeof t->n, seed);
+    for (int i = 0; i < t->set.n; i++)
+        if (brc_table_saves(t, i))
+            hash = brc_hash_bytes(brc_table_column(t, i), t->n * brc_field_size(&t->set.fields[i]),
+                                  hash);
+    return hash;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/base/simd.h"
+
+#include "common/base/error.h"
+
+static bool has(enum brc_simd set)
+{
+    switch (set) {
+    case BRC_SIMD_AVX512:
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+    case BRC_SIMD_AVX2:
+        return __builtin_cpu_supports("avx2");
+    default:
+        return true;
+    }
+}
+
+enum brc_simd brc_simd_of(int choice)
+{
+    int set = choice > 0 ? choice - 1 : BRC_N_SIMD - 1;
+    while (choice == 0 && !has((enum brc_simd)set))
+        set--;
+    return (enum brc_simd)set;
+}
+
+int brc_simd_check(struct brc_context *ctx, int choice)
+{
+    static const char *const name[BRC_N_SIMD] = {"base", "avx2", "avx512"};
+    enum brc_simd set = brc_simd_of(choice);
+    if (has(set))
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "run.simd = %s: this machine does not have these instructions; choose %s or auto",
+             name[set], name[brc_simd_of(0)]);
+}

@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/engine/contacts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BRC_OWNER struct brc_contacts
+static const struct brc_field contact_fields[] = {BRC_CONTACT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+int brc_contacts_create(struct brc_context *ctx, struct brc_contacts *c, const char *name,
+                        size_t n_bodies, struct brc_fieldset model, struct brc_fieldset points)
+{
+    memset(c, 0, sizeof *c);
+    c->lanes = 1;
+    struct brc_fieldset common = BRC_FIELDSET(contact_fields, struct brc_contacts);
+    brc_table_init(&c->table, name, common, c);
+    c->n_bodies = n_bodies;
+    c->model_columns = brc_alloc(ctx, 1, model.owner_size);
+    c->point_columns = brc_alloc(ctx, 1, points.owner_size);
+    c->adjacent_first = brc_alloc(ctx, n_bodies + 1, sizeof *c->adjacent_first);
+    if (!c->model_columns || !c->point_columns || !c->adjacent_first)
+        return BRC_ERR_MEMORY;
+    brc_table_init(&c->model, "model", model, c->model_columns);
+    brc_table_init(&c->points, "points", points, c->point_columns);
+    /* room for one row, so that no column is ever NULL */
+    BRC_TRY(brc_table_resize(ctx, &c->table, 1));
+    BRC_TRY(brc_table_resize(ctx, &c->model, 1));
+    BRC_TRY(brc_table_resize(ctx, &c->points, 1));
+    return brc_contacts_set(ctx, c, NULL, 0);
+}
+
+void brc_contacts_free(struct brc_contacts *c)
+{
+    brc_table_free(&c->table);
+    brc_table_free(&c->model);
+    brc_table_free(&c->points);
+    free(c->model_columns);
+    free(c->point_columns);
+    free(c->adjacent_first);
+    free(c->adjacent);
+    memset(c, 0, sizeof *c);
+}
+
+static int compare_pairs(int32_t a, int32_t b, const int32_t pair[2])
+{
+    if (a != pair[0])
+        return a < pair[0] ? -1 : 1;
+    return (b > pair[1]) - (b < pair[1]);
+}
+
+/* Rows of each body by counting; rows are sorted, so each list comes out ascending. */
+static int build_adjacency(struct brc_context *ctx, struct brc_contacts *c)
+{
+    uint32_t *adjacent = brc_realloc(ctx, c->adjacent, 2 * c->n, sizeof *adjacent);
+    if (!adjacent)
+        return BRC_ERR_MEMORY;
+    c->adjacent = adjacent;
+    size_t *first = c->adjacent_first;
+    memset(first, 0, (c->n_bodies + 1) * sizeof *first);
+    for (size_t i = 0; i < c->n; i++) {
+        first[c->a[i] + 1]++;
+        first[c->b[i] + 1]++;
+    }
+    for (size_t b = 0; b < c->n_bodies; b++)
+        first[b + 1] += first[b];
+    for (size_t i = 0; i < c->n; i++) {
+        adjacent[first[c->a[i]]++] = (uint32_t)(2 * i);
+        adjacent[first[c->b[i]]++] = (uint32_t)(2 * i + 1);
+    }
+    for (size_t b = c->n_bodies; b > 0; b--)
+        first[b] = first[b - 1];
+    first[0] = 0;
+    return 0;
+}
+
+/* Points that a range of np takes up. */
+static int32_t padded(int32_t np, int32_t lanes)
+{
+    return (np + lanes - 1) / lanes * lanes;
+}
+
+int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int32_t (*pair)[2],
+                     size_t n)
+{
+    size_t *from = brc_alloc(ctx, n, sizeof *from);
+    if (!from)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0, old = 0; i < n; i++) {
+        while (old < c->n && compare_pairs(c->a[old], c->b[old], pair[i]) < 0)
+            old++;
+        bool kept = old < c->n && compare_pairs(c->a[old], c->b[old], pair[i]) == 0;
+        from[i] = kept ? old : BRC_NEW_ROW;
+    }
+    int code = brc_table_gather(ctx, &c->table, from, n);
+    if (code == 0)
+        code = brc_table_gather(ctx, &c->model, from, n);
+    for (size_t i = 0; code == 0 && i < n; i++) {
+        if (from[i] != BRC_NEW_ROW)
+            continue;
+        c->a[i] = pair[i][0];
+        c->b[i] = pair[i][1];
+        c->facet[i] = -1;
+    }
+    free(from);
+    BRC_TRY(code);
+    c->n = n;
+    c->version++;
+    c->k_version++;
+    BRC_TRY(build_adjacency(ctx, c));
+    return brc_contacts_tidy(ctx, c);
+}
+
+int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t i, int32_t np)
+{
+    if (np > c->pcap[i]) {
+        size_t start = c->points.n;
+        int32_t reserved = padded(np, c->lanes);
+        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)reserved));
+        for (int f = 0; f < c->points.set.n; f++) {
+            size_t size = brc_field_size(&c->points.set.fields[f]);
+            char *column = brc_table_column(&c->points, f);
+            memcpy(column + start * size, column + (size_t)c->p0[i] * size,
+                   (size_t)c->np[i] * size);
+        }
+        c->p0[i] = (int32_t)start;
+        c->pcap[i] = reserved;
+    } else if (np > c->np[i]) {
+        for (int f = 0; f < c->points.set.n; f++) {
+            size_t size = brc_field_size(&c->points.set.fields[f]);
+            char *column = brc_table_column(&c->points, f);
+            memset(column + (size_t)(c->p0[i] + c->np[i]) * size, 0,
+                   (size_t)(np - c->np[i]) * size);
+        }
+    }
+    c->np[i] = np;
+    return 0;
+}
+
+int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b)
+{
+    const int32_t pair[2] = {a, b};
+    size_t low = 0, high = c->n;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int order = compare_pairs(c->a[middle], c->b[middle], pair);
+        if (order == 0)
+            return (int64_t)middle;
+        if (order < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return -1;
+}
+
+static bool is_busy(const struct brc_contacts *c, size_t row)
+{
+    return c->is_busy && c->is_busy(c, row);
+}
+
+/* Lists where the points of row i come from, from place k on, and moves its range there. */
+static size_t place(struct brc_contacts *c, size_t i, int32_t lanes, size_t *from, size_t k)
+{
+    int32_t start = (int32_t)k, reserved = padded(c->np[i], lanes);
+    for (int32_t j = 0; j < reserved; j++)
+        from[k++] = j < c->np[i] ? (size_t)c->p0[i] + (size_t)j : BRC_NEW_ROW;
+    c->p0[i] = start;
+    c->pcap[i] = reserved;
+    return k;
+}
+
+/* Moves the ranges of points to follow each other, each padded to a multiple of lanes; busy ones
+ * first where is_apart. */
+static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lanes, bool is_apart)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < c->n; i++)
+        total += (size_t)padded(c->np[i], lanes);
+    size_t *from = brc_alloc(ctx, total, sizeof *from);
+    if (!from)
+        return BRC_ERR_MEMORY;
+    size_t k = 0;
+    for (size_t i = 0; is_apart && i < c->n; i++)
+        if (is_busy(c, i))
+            k = place(c, i, lanes, from, k);
+    for (size_t i = 0; i < c->n; i++)
+        if (!is_apart || !is_busy(c, i))
+            k = place(c, i, lanes, from, k);
+    int code = brc_table_gather(ctx, &c->points, from, total);
+    free(from);
+    return code;
+}
+
+int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
+{
+    return arrange(ctx, c, c->lanes, true);
+}
+
+int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c)
+{
+    return arrange(ctx, c, 1, false);
+}
+
+int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
+{
+    c->n = c->table.n;
+    int32_t p = 0;
+    for (size_t i = 0; i < c->n; i++) {
+        c->p0[i] = p;
+        c->pcap[i] = c->np[i];
+        p += c->np[i];
+    }
+    if ((size_t)p != c->points.n || c->model.n != c->n)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "saved contacts do not fit together: %zu points, %d expected",
+                 c->points.n, p);
+    c->version++;
+    return build_adjacency(ctx, c);
+}
+
+int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c)
+{
+    size_t used = 0, busy = 0, astray = 0;
+    for (size_t i = 0; i < c->n; i++) {
+        used += (size_t)padded(c->np[i], c->lanes);
+        if (is_busy(c, i))
+            busy += (size_t)padded(c->np[i], c->lanes);
+    }
+    for (size_t i = 0; busy > 0 && i < c->n; i++)
+        astray += is_busy(c, i) && (size_t)c->p0[i] >= busy;
+    bool is_stale = 4 * c->points.n > 5 * used + 64 || 16 * astray > c->n;
+    return is_stale ? brc_contacts_compact(ctx, c) : 0;
+}
+
+uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed)
+{
+    uint64_t hash = brc_table_hash(&c->table, seed);
+    hash = brc_table_hash(&c->model, hash);
+    for (int f = 0; f < c->points.set.n; f++) {
+        const struct brc_field *field = &c->points.set.fields[f];
+        size_t size = brc_field_size(field);
+        const char *column = brc_table_column(&c->points, f);
+        for (size_t i = 0; brc_table_saves(&c->points, f) && i < c->n; i++)
+            hash = brc_hash_bytes(column + (size_t)c->p0[i] * size, (size_t)c->np[i] * size, hash);
+    }
+    return hash;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/engine/events.h"
+
+#include "common/geometry/vec.h"
+
+#include <string.h>
+
+#define BRC_OWNER struct brc_events
+static const struct brc_field event_fields[] = {BRC_EVENT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+void brc_events_init(struct brc_events *e)
+{
+    memset(e, 0, sizeof *e);
+    struct brc_fieldset set = BRC_FIELDSET(event_fields, struct brc_events);
+    brc_table_init(&e->table, "events", set, e);
+}
+
+void brc_events_free(struct brc_events *e)
+{
+    brc_table_free(&e->table);
+}
+
+void brc_events_add(struct brc_context *ctx, struct brc_events *e, int64_t step,
+                    const struct brc_event *event)
+{
+    size_t i = e->table.n;
+    if (brc_table_resize(ctx, &e->table, i + 1) != 0)
+        return;
+    e->step[i] = step;
+    e->a[i] = event->a;
+    e->b[i] = event->b;
+    e->facet[i] = event->facet;
+    e->point[i] = event->point;
+    e->mode[i] = (uint8_t)event->mode;
+    brc_copy(e->x[i], event->x);
+    brc_copy(e->n[i], event->n);
+    e->area[i] = event->area;
+    e->energy[i] = event->energy;
+    e->count[event->mode]++;
+}
+
+const char *brc_mode_name(enum brc_mode mode)
+{
+    static const char *const name[BRC_N_MODES] = {"tension", "shear", "torsion"};
+    return name[mode];
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loops of the integrator over bodies, four at a time, compiled for each instruction set by the
+ * files that include this one. */
+#ifndef BRC_INTEGRATE_LOOPS_H
+#define BRC_INTEGRATE_LOOPS_H
+
+#include "common/engine/integrate.h"
+#include "common/base/lanes.h"
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
+
+BRC_LANES_INLINE brc_lanes norm_of(const brc_lanes v[3])
+{
+    return brc_lanes_sqrt(brc_lanes_dot(v, v));
+}
+
+static void drift(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    double dt = sim->dt;
+    for (size_t i = 0; i < b->n; i += BRC_LANES) { /* rows past the last are room, of zeros */
+        brc_lanes x[3], v[3], w[3];
+        brc_lanes_at3(x, b->x + i);
+        brc_lanes_at3(v, b->v + i);
+        brc_lanes_at3(w, b->w + i);
+        for (int k = 0; k < 3; k++)
+            x[k] += dt * v[k];
+        brc_lanes_put3(b->x + i, x);
+        brc_lanes path = dt * (norm_of(v) + brc_lanes_at(b->reach + i) * norm_of(w));
+        brc_lanes_put(b->travel + i, brc_lanes_at(b->travel + i) + path);
+    }
+}
+
+/* Local non-viscous damping of a force (or moment) f against the velocity v. */
+BRC_LANES_INLINE void local_damping(const struct brc_sim *sim, brc_lanes d[3], const brc_lanes f[3],
+                                    const brc_lanes v[3])
+{
+    double alpha = sim->damping_alpha;
+    if (sim->run.damping == BRC_DAMPING_CARTESIAN) {
+        for (int k = 0; k < 3; k++) { /* eq:vgcm:3 eq:vgcm:5 */
+            brc_mask moves = brc_lanes_less(brc_lanes_all(0), brc_lanes_abs(v[k]));
+            d[k] = brc_lanes_where(moves, -alpha * brc_lanes_sign(f[k], v[k]));
+        }
+        return;
+    }
+    brc_lanes speed = norm_of(v), part = -alpha * norm_of(f) / speed;
+    part = brc_lanes_where(brc_lanes_less(brc_lanes_all(0), speed), part);
+    for (int k = 0; k < 3; k++)
+        d[k] = part * v[k];
+}
+
+struct kick_sums {
+    brc_lanes kinetic;       /* sum of m v- . v+ / 2 */
+    brc_lanes damping;       /* work of the damping force over the half step before the kick */
+    brc_lanes damping_ahead; /* and over the half step after it */
+};
+
+/* Four bodies' force or moment, its damping, and v or w before and after. */
+struct push {
+    brc_lanes f[3], d[3], old[3], now[3];
+};
+
+/* Without a ledger nothing is summed but kinetic energy. */
+BRC_LANES_INLINE void add_damping(const struct brc_sim *sim, brc_mask live, double dt,
+                                  const struct push *p, struct kick_sums *sums)
+{
+    if (!BRC_OPTION(sim->run.ledger))
+        return;
+    sums->damping -= brc_lanes_where(live, 0.5 * dt * brc_lanes_dot(p->d, p->old));
+    sums->damping_ahead -= brc_lanes_where(live, 0.5 * dt * brc_lanes_dot(p->d, p->now));
+}
+
+/* What local damping acts against: the motion, or what it differs from its mean by. */
+BRC_LANES_INLINE void damped_motion(const struct brc_sim *sim, brc_lanes v[3],
+                                    const brc_lanes old[3], double (*mean)[3])
+{
+    brc_lanes spared[3];
+    brc_lanes_at3(spared, mean);
+    bool is_spared = sim->spares_mean && sim->rig.is_settled;
+    for (int k = 0; k < 3; k++)
+        v[k] = is_spared ? old[k] - spared[k] : old[k];
+}
+
+/* What pushes bodies i to i + 3: v or w before, force or moment, damping. */
+BRC_LANES_INLINE void push_of(const struct brc_sim *sim, double (*v)[3], double (*f)[3],
+                              double (*mean)[3], struct push *p)
+{
+    brc_lanes damped[3];
+    brc_lanes_at3(p->old, v);
+    brc_lanes_at3(p->f, f);
+    for (int k = 0; k < 3; k++)
+        p->d[k] = brc_lanes_all(0);
+    if (BRC_OPTION(sim->damping_alpha > 0)) {
+        damped_motion(sim, damped, p->old, mean);
+        local_damping(sim, p->d, p->f, damped); /* eq:vgcm:4 */
+    }
+}
+
+/* Exponential mean over the memory of the damping. */
+BRC_LANES_INLINE void follow_mean(const struct brc_sim *sim, brc_mask live, double (*mean)[3],
+                                  const struct push *p)
+{
+    brc_lanes at[3];
+    if (!BRC_OPTION(sim->has_mean))
+        return;
+    brc_lanes_at3(at, mean);
+    for (int k = 0; k < 3; k++)
+        at[k] += brc_lanes_where(live, (p->now[k] - at[k]) / sim->run.damping_memory);
+    brc_lanes_put3(mean, at);
+}
+
+BRC_LANES_INLINE void put_where(brc_mask live, double (*v)[3], const struct push *p)
+{
+    brc_lanes put[3];
+    for (int k = 0; k < 3; k++)
+        put[k] = brc_lanes_pick(live, p->now[k], p->old[k]);
+    brc_lanes_put3(v, put);
+}
+
+/* v += dt (f + damping) / m, with the sums for the ledger. */
+BRC_LANES_INLINE void kick_translation(const struct brc_sim *sim, size_t i, brc_mask live,
+                                       double dt, struct kick_sums *sums)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    struct push p;
+    brc_lanes mass = brc_lanes_at(b->mass + i);
+    push_of(sim, b->v + i, b->f + i, b->v_mean + i, &p);
+    for (int k = 0; k < 3; k++)
+        p.now[k] = p.old[k] + dt * (p.f[k] + p.d[k]) / mass; /* eq:vgcm:1 */
+    put_where(live, b->v + i, &p);
+    follow_mean(sim, live, b->v_mean + i, &p);
+    sums->kinetic += brc_lanes_where(live, 0.5 * mass * brc_lanes_dot(p.old, p.now));
+    add_damping(sim, live, dt, &p, sums);
+}
+
+/* Grains with unequal moments of inertia, one after the other. */
+static __attribute__((noinline)) void spin_up(const struct brc_bodies *b, size_t i, brc_mask live,
+                                              double dt, struct push *p, struct kick_sums *sums)
+{
+    for (int k = 0; k < BRC_LANES; k++) {
+        size_t n = i + (size_t)k;
+        if (!live[k])
+            continue;
+        double lold[3],
+            sum[3] = {p->f[0][k] + p->d[0][k], p->f[1][k] + p->d[1][k], p->f[2][k] + p->d[2][k]};
+        brc_copy(lold, b->l[n]);
+        brc_axpy(b->l[n], dt, sum);
+        brc_integrate_spin(b->w[n], b->q[n], b->l[n], b->inertia[n]);
+        sums->kinetic[k] += 0.5 * brc_dot(lold, b->w[n]);
+    }
+    brc_lanes_at3(p->now, b->w + i);
+}
+
+/* w and l from the moments; for equal moments of inertia l is left alone. */
+BRC_LANES_INLINE void kick_rotation(const struct brc_sim *sim, size_t i, brc_mask live, double dt,
+                                    struct kick_sums *sums)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    struct push p;
+    brc_lanes inertia[3];
+    brc_lanes_at3(inertia, b->inertia + i);
+    push_of(sim, b->w + i, b->t + i, b->w_mean + i, &p);
+    brc_mask unequal =
+        live & (brc_lanes_less(inertia[0], inertia[1]) | brc_lanes_less(inertia[1], inertia[0]) |
+                brc_lanes_less(inertia[1], inertia[2]) | brc_lanes_less(inertia[2], inertia[1]));
+    brc_mask equal = live & ~unequal;
+    for (int k = 0; k < 3; k++)
+        p.now[k] = p.old[k] + dt / inertia[0] * (p.f[k] + p.d[k]); /* eq:vgcm:2 */
+    put_where(equal, b->w + i, &p);
+    sums->kinetic += brc_lanes_where(equal, 0.5 * inertia[0] * brc_lanes_dot(p.old, p.now));
+    if (brc_lanes_any(unequal))
+        spin_up(b, i, unequal, dt, &p, sums);
+    follow_mean(sim, live, b->w_mean + i, &p);
+    add_damping(sim, live, dt, &p, sums);
+}
+
+static void kick(struct brc_sim *sim, double dt)
+{
+    struct kick_sums sums = {.kinetic = brc_lanes_all(0)};
+    bool rotates = sim->model.flags & BRC_MODEL_ROTATES;
+    for (size_t i = 0; i < sim->bodies.n_grains; i += BRC_LANES) {
+        brc_mask live = brc_lanes_first((int64_t)(sim->bodies.n_grains - i));
+        kick_translation(sim, i, live, dt, &sums);
+        if (rotates)
+            kick_rotation(sim, i, live, dt, &sums);
+    }
+    sim->ledger.kinetic = brc_lanes_sum(sums.kinetic);
+    sim->ledger.local_damping += brc_lanes_sum(sums.damping);
+    sim->damping_ahead = brc_lanes_sum(sums.damping_ahead);
+}
+
+#endif

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A contact model is one const struct of this type, filled in <folder>/model.c and named
+ * brc_model_<folder>. The framework owns the memory of everything declared in the field lists;
+ * saving, hashing and comparing come from them. docs/add-a-model.md walks through it. */
+#ifndef BRC_MODEL_H
+#define BRC_MODEL_H
+
+#include "common/base/fields.h"
+#include "common/input/params.h"
+#include "common/engine/stability.h"
+#include "common/geometry/grid.h"
+
+enum brc_model_flags {
+    BRC_MODEL_ROTATES = 1,  /* grains turn: moments are used */
+    BRC_MODEL_ORIENTED = 2, /* the model reads q: orientation is integrated */
+    BRC_MODEL_ADDS = 4      /* forces adds those of pairs to the bodies' sum; pairs keep f alone */
+};
+
+struct brc_model {
+    const char *name;
+    const char *citation;
+    struct brc_param_list params;
+    struct brc_fieldset body_fields, contact_fields, point_fields;
+    unsigned flags;
+    int point_lanes; /* ranges of points begin at its multiples, padded with zeros; 0 counts as 1 */
+
+    /* --- required ------------------------------------------------------------------------------
+     */
+
+    /* Geometry, mass and inertia of the grains: fills sim->bodies x, q, true_mass, true_inertia,
+     * volume, reach and the model's body fields for the grains. Called once. */
+    int (*shape)(struct brc_sim *sim, void *state);
+    /* Opens the initial contacts and points of sim->pairs from the facets, and of sim->platens from
+     * the boundary facets. Called once, after shape. */
+    int (*bond)(struct brc_sim *sim, void *state);
+    /* Candidates have changed: open rows that may interact, close those that are apart, keep the
+     * state of the rest (brc_contacts_set). Bonded rows stay whatever the candidates say. */
+    int (*pairs)(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
+                 const struct brc_candidates *platens);
+    /* Hot. All rows of sim->pairs for one step: writes f, ta, tb, k (and k_version), updates point
+     * state, adds to the ledger when sim->run.ledger is on, appends crack events. No allocation
+     * outside brc_contacts_points and brc_events_add, no I/O; reads bodies, never writes them, but
+     * for their sum where the model ADDS: then ta and tb need not be written, nor read again. */
+    void (*forces)(struct brc_sim *sim, void *state);
+    /* The same for the rows of sim->platens. */
+    void (*walls)(struct brc_sim *sim, void *state);
+    /* Energy stored now, from state alone [J]: bond, contact normal, contact shear. */
+    void (*energy)(const struct brc_sim *sim, const void *state, double stored[3]);
+    /* Springs that act now, linearised, for the stable time step. */
+    int (*springs)(const struct brc_sim *sim, const void *state, struct brc_springs *out);
+
+    /* --- optional, with a default ----------------------------------------------------------------
+     */
+
+    /* Judges parameters and specimen together; allocates nothing; names the parameter that is
+     * wrong. Default: accepts. */
+    int (*check)(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen);
+    /* Private memory in *state. Default: none. free accepts a half-built state and NULL. */
+    int (*create)(struct brc_sim *sim, void **state);
+    void (*free)(void *state);
+    /* Parameters or options changed: choose the specialised loop. Default: nothing. */
+    void (*select)(struct brc_sim *sim, void *state);
+    /* The step had crack events with numbers from first on: candidates for those pairs and the
+     * like. Default: nothing. */
+    int (*after_break)(struct brc_sim *sim, void *state, size_t first);
+    /* A loaded state has replaced all fields: derive private memory again. Default: nothing. */
+    int (*restore)(struct brc_sim *sim, void *state);
+    /* Fields that hold nothing in this model, in the tables of bodies, pairs and platens and those
+     * of their points: names with spaces between. They are not saved. Default: none. */
+    const char *no_bodies, *no_pairs, *no_platens;
+    /* Part of the tensile strength of an intact bond (row of sim->pairs) that is left, in [0, 1]:
+     * tells what holds together. Default: 1. */
+    double (*strength_left)(const struct brc_sim *sim, const void *state, size_t row);
+    /* One paragraph for the run header: readings chosen, derived stiffness. Default: empty. */
+    void (*describe)(const struct brc_sim *sim, const void *state, char *text, size_t size);
+};
+
+/* Registered models: the folders that held a model.c at build time. */
+int brc_registry_count(void);
+const struct brc_model *brc_registry_at(int i);
+const struct brc_model *brc_registry_find(const char *name);
+/* Checks the required operations of a model and returns a copy with the defaults filled in. */
+int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
+                       struct brc_model *complete);
+
+#endif

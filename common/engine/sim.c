@@ -1,0 +1,445 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/engine/sim.h"
+
+#include "common/engine/blowup.h"
+#include "common/engine/integrate.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BRC_OWNER struct brc_run_params
+static const struct brc_param run_params[] = {BRC_PARAM_LIST(BRC_RUN_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_run_param_list = BRC_PARAMS(run_params, struct brc_run_params);
+
+#define SIM_SCALAR(type, name, unit, meaning) \
+    {#name, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, name)},
+#define RIG_SCALAR(type, name, unit, meaning) \
+    {"rig_" #name, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, rig.name)},
+#define LEDGER_SCALAR(name, sign, meaning) \
+    {"energy_" #name, BRC_F64, "J", meaning, offsetof(struct brc_sim, ledger.name)},
+const struct brc_scalar brc_sim_scalars[] = {BRC_SIM_SCALARS(SIM_SCALAR) BRC_RIG_SCALARS(
+    RIG_SCALAR) BRC_LEDGER_TERMS(LEDGER_SCALAR){"energy_start", BRC_F64, "J", "energy at the start",
+                                                offsetof(struct brc_sim, ledger.start)}};
+const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scalars[0]);
+
+/* steps between two looks at the memory that moved point ranges have left behind */
+enum { TIDY_STEPS = 100 };
+/* growth of the largest sum k / m that calls for a new estimate */
+static const double LIMIT_GROWTH = 1.05;
+/* growth of all masses that calls for another look at the eigenfrequencies of small ones: masses
+ * grow where contacts are new or stiffer, and where bonds break the frequencies only fall */
+static const double MASS_GROWTH = 1.01;
+/* factor on the scaled masses that needs no look at the eigenfrequencies, and the part of the limit
+ * that a step may be with a smaller one */
+static const double SAFE_MASS_MARGIN = 1.2, MASS_LIMIT = 0.9;
+
+/* Adds the forces and moments of all rows to the bodies, row after row: for each body that is the
+ * ascending order of its rows, so that the sums depend on global numbers only. The rows of one a
+ * follow each other, after all those in which it is b. */
+static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3])
+{
+    for (size_t row = 0; row < c->n;) {
+        int32_t a = c->a[row];
+        double fa[3], ta[3];
+        brc_copy(fa, f[a]);
+        brc_copy(ta, t[a]);
+        for (; row < c->n && c->a[row] == a; row++) {
+            const double *of = c->f[row], *of_a = c->ta[row], *of_b = c->tb[row];
+            double *restrict fb = f[c->b[row]], *restrict tb = t[c->b[row]];
+            for (int k = 0; k < 3; k++) {
+                double part = of[k];
+                fa[k] -= part;
+                fb[k] += part;
+                ta[k] += of_a[k];
+                tb[k] += of_b[k];
+            }
+        }
+        brc_copy(f[a], fa);
+        brc_copy(t[a], ta);
+    }
+}
+
+static void gather(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    bool is_added = sim->model.flags & BRC_MODEL_ADDS;
+    for (size_t i = 0; i < b->n; i++) {
+        brc_scale(b->f[i], sim->run.gravity, b->true_mass[i]);
+        brc_set(b->t[i], 0, 0, 0);
+        if (is_added) {
+            brc_add(b->f[i], b->f[i], b->sum[i]);
+            brc_copy(b->t[i], b->sum[i] + 4);
+        }
+    }
+    if (!is_added)
+        add_rows(&sim->pairs, b->f, b->t);
+    add_rows(&sim->platens, b->f, b->t);
+}
+
+int brc_sim_near_platens(const struct brc_sim *sim, struct brc_candidates *out)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    out->n = 0;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        for (size_t p = b->n_grains; p < b->n; p++) {
+            double d[3];
+            brc_sub(d, b->x[i], b->x[p]);
+            if (brc_dot(d, brc_sim_platen(sim, (int32_t)p)->n) < b->reach[i] + sim->skin)
+                BRC_TRY(brc_candidates_add(sim->ctx, out, i, p));
+        }
+    }
+    return 0;
+}
+
+static int update_candidates(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    struct brc_candidates grains = {0}, platens = {0};
+    int code = brc_grid_pairs(sim->ctx, b->x, b->reach, b->n_grains, sim->skin, &grains);
+    if (code == 0)
+        code = brc_sim_near_platens(sim, &platens);
+    if (code == 0)
+        code = sim->model.pairs(sim, sim->state, &grains, &platens);
+    brc_candidates_free(&grains);
+    brc_candidates_free(&platens);
+    memcpy(b->travel_listed, b->travel, b->n * sizeof *b->travel);
+    sim->n_listings++;
+    return code;
+}
+
+/* The candidate list holds while no two bodies have come nearer by more than the skin. */
+static int check_travel(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    bool stale = false;
+    for (size_t i = 0; i < b->n; i++) {
+        double moved = b->travel[i] - b->travel_listed[i];
+        if (!(moved < BRC_BLOWUP_SKINS * sim->skin)) /* not a number included */
+            return brc_blowup_travel(sim);
+        stale |= moved > 0.5 * sim->skin;
+    }
+    return stale ? update_candidates(sim) : 0;
+}
+
+/* Largest sum k / m over the bodies: grows when the stable limit may have fallen. */
+static double stiffness_bound(const struct brc_sim *sim)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    double bound = 0;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        double k[2], least = fmin(b->inertia[i][0], fmin(b->inertia[i][1], b->inertia[i][2]));
+        brc_integrate_stiffness(sim, i, k);
+        bound = fmax(bound, k[0] / b->mass[i]);
+        if (sim->model.flags & BRC_MODEL_ROTATES)
+            bound = fmax(bound, k[1] / least);
+    }
+    return bound;
+}
+
+/* Dynamic regime: the step that goes with the limit. */
+static int choose_dt(struct brc_sim *sim)
+{
+    if (sim->run.dt > sim->dt_limit)
+        BRC_FAIL(
+            sim->ctx, BRC_ERR_INPUT,
+            "run.dt = %g s is above the stable limit of %g s at step %lld; use at most that, or "
+            "0 s for an automatic step",
+            sim->run.dt, sim->dt_limit, (long long)sim->step);
+    if (sim->run.dt > 0)
+        sim->dt = sim->run.dt;
+    else if (sim->dt == 0 && !(sim->dt_limit < HUGE_VAL))
+        BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
+                 "nothing is in contact yet, so there is no automatic time step: give run.dt");
+    else if (sim->dt == 0 || sim->dt > sim->run.dt_margin * sim->dt_limit)
+        sim->dt = sim->run.dt_margin * sim->dt_limit;
+    return 0;
+}
+
+/* Dynamic regime: keeps dt below the stable limit of the springs that act, or may soon (is_listed:
+ * the candidates are new). */
+static int update_dt(struct brc_sim *sim, bool is_listed)
+{
+    double bound = stiffness_bound(sim);
+    if (!is_listed && bound <= LIMIT_GROWTH * sim->stiffness_bound)
+        return choose_dt(sim);
+    sim->stiffness_bound = fmax(bound, sim->stiffness_bound);
+    BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
+    return choose_dt(sim);
+}
+
+/* Quasi-static regime: masses grow with the stiffness. Those below what is safe for every network
+ * are held against the largest eigenfrequency of the present one. */
+static int update_masses(struct brc_sim *sim, bool is_listed)
+{
+    double margin = sim->run.mass_margin, mass = 0;
+    brc_integrate_scale_masses(sim);
+    if (sim->step == 0)
+        BRC_TRY(brc_integrate_loose_masses(sim));
+    if (margin >= SAFE_MASS_MARGIN || !is_listed)
+        return 0;
+    for (size_t i = 0; i < sim->bodies.n_grains; i++)
+        mass += sim->bodies.mass[i];
+    if (mass <= MASS_GROWTH * sim->mass_checked)
+        return 0;
+    sim->mass_checked = mass;
+    BRC_TRY(brc_stability_limit(sim, &sim->dt_limit));
+    double least = margin / (MASS_LIMIT * MASS_LIMIT * sim->dt_limit * sim->dt_limit);
+    if (least > margin)
+        BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
+                 "run.mass_margin = %g is unstable at step %lld; use at least %.2g here, or %g, "
+                 "which holds always",
+                 margin, (long long)sim->step, least, SAFE_MASS_MARGIN);
+    return 0;
+}
+
+/* Masses (quasi-static) or time step (dynamic) follow the stiffness of the contacts from the first
+ * step on in which it has changed. */
+static int follow_stiffness(struct brc_sim *sim, bool is_listed)
+{
+    bool is_same =
+        sim->pairs.k_version == sim->k_seen[0] && sim->platens.k_version == sim->k_seen[1];
+    if (is_same && !is_listed)
+        return sim->run.regime == BRC_DYNAMIC ? choose_dt(sim) : 0;
+    sim->k_seen[0] = sim->pairs.k_version;
+    sim->k_seen[1] = sim->platens.k_version;
+    if (sim->run.regime == BRC_DYNAMIC)
+        return update_dt(sim, is_listed);
+    return update_masses(sim, is_listed);
+}
+
+void brc_sim_forces(struct brc_sim *sim)
+{
+    if (sim->model.flags & BRC_MODEL_ADDS)
+        memset(sim->bodies.sum, 0, sim->bodies.n * sizeof *sim->bodies.sum);
+    sim->model.forces(sim, sim->state);
+    sim->model.walls(sim, sim->state);
+    gather(sim);
+}
+
+static double mean_grain_radius(const struct brc_sim *sim)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double volume = 0;
+    for (size_t i = 0; i < f->n_cells; i++)
+        volume += f->volume[i];
+    return cbrt(volume / (double)f->n_cells * 3 / (4 * BRC_PI));
+}
+
+/* Scaled masses know nothing of the true ones. */
+static void start_masses(struct brc_sim *sim)
+{
+    struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains && sim->run.regime == BRC_DYNAMIC; i++) {
+        b->mass[i] = b->true_mass[i];
+        brc_copy(b->inertia[i], b->true_inertia[i]);
+    }
+}
+
+/* Grains, contacts and candidates; then the model's choice of loops. */
+static int build(struct brc_sim *sim, const struct brc_test_params *test)
+{
+    struct brc_bodies *b = &sim->bodies;
+    sim->skin = sim->run.skin * mean_grain_radius(sim);
+    BRC_TRY(sim->model.create(sim, &sim->state));
+    BRC_TRY(sim->model.shape(sim, sim->state));
+    for (size_t i = 0; i < b->n_grains; i++) {
+        brc_copy(b->x0[i], b->x[i]);
+        memcpy(b->q0[i], b->q[i], sizeof b->q[i]);
+    }
+    BRC_TRY(brc_rig_create(sim, test));
+    start_masses(sim);
+    BRC_TRY(sim->model.bond(sim, sim->state));
+    BRC_TRY(update_candidates(sim));
+    sim->model.select(sim, sim->state);
+    return 0;
+}
+
+/* Forces at rest, masses or time step, and the first half kick. */
+static int start(struct brc_sim *sim)
+{
+    double stored[3];
+    sim->dt_limit = sim->run.regime == BRC_QUASI_STATIC ? 0 : HUGE_VAL;
+    brc_sim_forces(sim);
+    sim->ledger = (struct brc_ledger){0};
+    sim->dt = sim->run.regime == BRC_QUASI_STATIC ? 1 : 0;
+    sim->k_seen[0] = sim->k_seen[1] = -1;
+    BRC_TRY(follow_stiffness(sim, true));
+    sim->ledger = (struct brc_ledger){0};
+    /* from v_0 back to v_-1/2, then the first whole kick */
+    double alpha = sim->damping_alpha;
+    sim->damping_alpha = 0;
+    brc_integrate_kick(sim, -0.5 * sim->dt);
+    sim->damping_alpha = alpha;
+    brc_integrate_kick(sim, sim->dt);
+    sim->ledger.local_damping = 0;
+    brc_rig_restore(sim);
+    sim->model.energy(sim, sim->state, stored);
+    sim->ledger.bond = stored[0];
+    sim->ledger.contact_normal = stored[1];
+    sim->ledger.contact_shear = stored[2];
+    sim->ledger.start = sim->ledger.kinetic + stored[0] + stored[1] + stored[2];
+    return sim->ctx->code;
+}
+
+/* A change of rate moves the mean velocities, so adaptive loading needs them in any case. */
+static void choose_damped(struct brc_sim *sim, const struct brc_test_params *test)
+{
+    bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE && brc_rig_platens(test) > 0;
+    bool is_auto = sim->run.damped == BRC_DAMPED_AUTO;
+    sim->spares_mean = is_auto ? is_adaptive : sim->run.damped == BRC_DAMPED_FLUCTUATION;
+    sim->has_mean = sim->run.regime == BRC_QUASI_STATIC && (is_adaptive || sim->spares_mean);
+    sim->spares_mean &= sim->has_mean;
+    double alpha = sim->spares_mean ? sim->run.fluctuation_damping : sim->run.local_damping;
+    sim->damping_alpha = sim->run.regime == BRC_QUASI_STATIC ? alpha : 0;
+}
+
+static void leave_out(struct brc_contacts *c, const char *names)
+{
+    brc_table_leave_out(&c->table, names);
+    brc_table_leave_out(&c->model, names);
+    brc_table_leave_out(&c->points, names);
+}
+
+/* Tables of all parts of the state: rows for the bodies, none of the others. */
+static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
+{
+    const struct brc_model *m = &sim->model;
+    size_t n = n_grains + n_platens;
+    brc_rig_start_curve(sim);
+    BRC_TRY(brc_bodies_create(sim->ctx, &sim->bodies, n_grains, n_platens, m->body_fields));
+    BRC_TRY(
+        brc_contacts_create(sim->ctx, &sim->pairs, "pairs", n, m->contact_fields, m->point_fields));
+    BRC_TRY(brc_contacts_create(sim->ctx, &sim->platens, "platens", n, m->contact_fields,
+                                m->point_fields));
+    brc_table_leave_out(&sim->bodies.table, m->no_bodies);
+    leave_out(&sim->pairs, m->no_pairs);
+    leave_out(&sim->platens, m->no_platens);
+    return 0;
+}
+
+int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model)
+{
+    memset(sim, 0, sizeof *sim);
+    sim->ctx = ctx;
+    brc_events_init(&sim->events);
+    int code = brc_model_complete(ctx, model, &sim->model);
+    if (code == 0)
+        code = make_tables(sim, 0, 0);
+    if (code != 0)
+        brc_sim_free(sim);
+    return code;
+}
+
+int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
+                   const void *params, const struct brc_specimen *specimen,
+                   const struct brc_test_params *test, const struct brc_run_params *run)
+{
+    memset(sim, 0, sizeof *sim);
+    sim->ctx = ctx;
+    sim->specimen = specimen;
+    sim->run = *run;
+    choose_damped(sim, test);
+    brc_events_init(&sim->events);
+    BRC_TRY(brc_simd_check(ctx, run->simd));
+    BRC_TRY(brc_model_complete(ctx, model, &sim->model));
+    BRC_TRY(sim->model.check(ctx, params, specimen));
+    const struct brc_model *m = &sim->model;
+    size_t n_grains = specimen->facets.n_cells, n_platens = (size_t)brc_rig_platens(test);
+    sim->rig.n_platens = (int)n_platens;
+    sim->params = brc_alloc(ctx, 1, m->params.owner_size);
+    int code = sim->params ? 0 : BRC_ERR_MEMORY;
+    if (code == 0 && m->params.owner_size > 0)
+        memcpy(sim->params, params, m->params.owner_size);
+    if (code == 0)
+        code = make_tables(sim, n_grains, n_platens);
+    if (code == 0 && m->point_lanes > 0)
+        sim->pairs.lanes = sim->platens.lanes = m->point_lanes;
+    if (code == 0)
+        code = build(sim, test);
+    if (code == 0)
+        code = start(sim);
+    if (code != 0)
+        brc_sim_free(sim);
+    return code;
+}
+
+void brc_sim_free(struct brc_sim *sim)
+{
+    if (sim->model.free)
+        sim->model.free(sim->state);
+    brc_rig_free(sim);
+    brc_contacts_free(&sim->pairs);
+    brc_contacts_free(&sim->platens);
+    brc_bodies_free(&sim->bodies);
+    brc_events_free(&sim->events);
+    free(sim->params);
+    memset(sim, 0, sizeof *sim);
+}
+
+/* Work of gravity over the drift that has just been made. */
+static void add_gravity_work(struct brc_sim *sim)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    if (!BRC_OPTION(brc_norm2(sim->run.gravity) > 0))
+        return;
+    for (size_t i = 0; i < b->n_grains; i++)
+        sim->ledger.gravity += b->true_mass[i] * brc_dot(sim->run.gravity, b->v[i]) * sim->dt;
+}
+
+int brc_sim_step(struct brc_sim *sim)
+{
+    size_t events = sim->events.table.n;
+    int64_t listings = sim->n_listings;
+    double dt_before = sim->dt;
+    brc_integrate_drift(sim);
+    sim->ledger.local_damping += sim->damping_ahead;
+    add_gravity_work(sim);
+    sim->step++;
+    sim->time += sim->dt;
+    BRC_TRY(check_travel(sim));
+    brc_sim_forces(sim);
+    BRC_TRY(sim->ctx->code);
+    BRC_TRY(brc_rig_step(sim));
+    BRC_TRY(follow_stiffness(sim, sim->n_listings > listings));
+    brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
+    if (!isfinite(sim->ledger.kinetic))
+        return brc_blowup_number(sim);
+    if (BRC_OPTION(sim->events.table.n > events))
+        BRC_TRY(sim->model.after_break(sim, sim->state, events));
+    if (sim->step % TIDY_STEPS == 0) {
+        BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->pairs));
+        BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->platens));
+    }
+    return brc_rig_sample(sim);
+}
+
+int brc_sim_restore(struct brc_sim *sim)
+{
+    BRC_TRY(brc_contacts_restore(sim->ctx, &sim->pairs));
+    BRC_TRY(brc_contacts_restore(sim->ctx, &sim->platens));
+    BRC_TRY(brc_contacts_compact(sim->ctx, &sim->pairs));
+    BRC_TRY(brc_contacts_compact(sim->ctx, &sim->platens));
+    memset(sim->events.count, 0, sizeof sim->events.count);
+    for (size_t i = 0; i < sim->events.table.n; i++)
+        sim->events.count[sim->events.mode[i]]++;
+    brc_rig_restore(sim);
+    BRC_TRY(sim->model.restore(sim, sim->state));
+    sim->model.select(sim, sim->state);
+    return 0;
+}
+
+uint64_t brc_sim_hash(const struct brc_sim *sim)
+{
+    uint64_t hash = brc_table_hash(&sim->bodies.table, BRC_HASH_SEED);
+    hash = brc_table_hash(&sim->bodies.model, hash);
+    hash = brc_contacts_hash(&sim->pairs, hash);
+    hash = brc_contacts_hash(&sim->platens, hash);
+    hash = brc_table_hash(&sim->events.table, hash);
+    hash = brc_table_hash(&sim->rig.curve.table, hash);
+    for (int i = 0; i < brc_sim_n_scalars; i++)
+        hash = brc_hash_bytes((const char *)sim + brc_sim_scalars[i].offset,
+                              brc_type_size(brc_sim_scalars[i].type), hash);
+    return hash;
+}

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One running simulation: what a step reads and writes. */
+#ifndef BRC_SIM_H
+#define BRC_SIM_H
+
+#include "common/engine/bodies.h"
+#include "common/engine/contacts.h"
+#include "common/engine/events.h"
+#include "common/engine/ledger.h"
+#include "common/engine/model.h"
+#include "common/engine/rig.h"
+#include "common/base/simd.h"
+#include "common/specimen/specimen.h"
+
+enum brc_regime { BRC_DYNAMIC, BRC_QUASI_STATIC };
+enum brc_damping { BRC_DAMPING_CARTESIAN, BRC_DAMPING_ALONG_VELOCITY };
+enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
+
+#define BRC_RUN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                \
+    CHOICE(                                                                                       \
+        regime, "dynamic|quasi_static", "quasi_static",                                           \
+        "dynamic: true mass, viscous contact damping; quasi_static: scaled mass, step 1, local "  \
+        "damping")                                                                                \
+    REAL(dt, "s", "0 s", "[0, inf)", "dynamic: time step; 0: automatic; above the limit: error",  \
+         "regime=dynamic")                                                                        \
+    REAL(dt_margin, "1", "0.5", "(0, 1)", "dynamic, automatic: part of the stable limit",         \
+         "regime=dynamic, dt=0")                                                                  \
+    REAL(mass_margin, "1", "1.2", "(0, 100]",                                                     \
+         "quasi_static: factor on the scaled masses; below 1.2 the largest eigenfrequency is "    \
+         "measured, and an unstable step is an error",                                            \
+         "regime=quasi_static")                                                                   \
+    REAL(local_damping, "1", "0.7", "[0, 1)",                                                     \
+         "quasi_static: local non-viscous damping alpha against the whole motion",                \
+         "regime=quasi_static, damped=auto|motion")                                               \
+    REAL(fluctuation_damping, "1", "0.3", "[0, 1)",                                               \
+         "quasi_static: alpha against the fluctuation about the mean motion, in its place",       \
+         "regime=quasi_static, damped=auto|fluctuation")                                          \
+    CHOICE(damping, "cartesian|along_velocity", "cartesian",                                      \
+           "local damping per Cartesian component as printed, or along the velocity",             \
+           "regime=quasi_static")                                                                 \
+    CHOICE(damped, "auto|motion|fluctuation", "auto",                                             \
+           "local damping acts against the whole motion, as printed, or against its fluctuation " \
+           "about the mean of the last steps; auto: fluctuation under adaptive loading",          \
+           "regime=quasi_static")                                                                 \
+    REAL(damping_memory, "1", "35", "[1, 1000]", "steps that this mean reaches back",             \
+         "regime=quasi_static, damped=auto|fluctuation or test.loading=adaptive")                 \
+    REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")             \
+    FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")                \
+    REAL(skin, "1", "0.2", "[0.01, 0.5]", "candidates: skin, in mean grain radii")                \
+    CHOICE(simd, "auto|base|avx2|avx512", "auto",                                                 \
+           "instructions that hot loops use; the same bits with each of them")                    \
+    INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")           \
+    REAL(checkpoint, "s", "5 min", "[0, inf)",                                                    \
+         "elapsed time between saved states; 0: none by time")                                    \
+    INT(checkpoint_steps, "0", "[0, 2000000000]", "steps between saved states; 0: none by steps")
+
+struct brc_run_params {
+    BRC_PARAM_MEMBERS(BRC_RUN_PARAMS)
+};
+extern const struct brc_param_list brc_run_param_list;
+
+/* Scalars that belong to the state, declared once for saving and hashing (with the ledger's terms).
+ */
+#define BRC_RIG_SCALARS(X)                                                    \
+    X(double, rate, "s-1", "strain rate")                                     \
+    X(double, change, "1", "adaptive: change of log rate a step")             \
+    X(double, strain_onset, "1", "adaptive: where damage began; 0: not yet")  \
+    X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")   \
+    X(int64_t, is_lost, "1", "adaptive: the load has fallen from its peak")   \
+    X(int64_t, is_settled, "1", "the start has been left behind")             \
+    X(double, strain, "1", "platen strain, in the sense of the test")         \
+    X(double, force, "N", "mean platen force now, in the sense of the test")  \
+    X(double, force_sum, "N", "sum of force since the last row of the curve") \
+    X(double, strain_sum, "1", "sum of strain since the last row")            \
+    X(int64_t, n_summed, "1", "steps in force_sum")                           \
+    X(double, force_peak, "N", "largest row of the curve")                    \
+    X(double, strain_peak, "1", "platen strain at the peak")                  \
+    X(double, unbalanced, "1", "mean unbalanced force / mean contact force")
+
+#define BRC_SIM_SCALARS(X)                                                                        \
+    X(int64_t, step, "1", "steps made")                                                           \
+    X(double, time, "s", "time")                                                                  \
+    X(double, dt, "s", "time step")                                                               \
+    X(double, dt_limit, "s", "stable limit at the last estimate")                                 \
+    X(double, stiffness_bound, "s-2", "largest sum k / m at the last estimate of dt_limit")       \
+    X(double, damping_ahead, "J", "work of local damping over the half step after the last kick") \
+    X(int64_t, n_listings, "1", "candidate listings so far")
+
+#define BRC_SCALAR_MEMBER(type, name, unit, meaning) type name;
+
+struct brc_rig {
+    struct brc_test_params params;
+    int n_platens;
+    struct brc_platen platen[BRC_MAX_PLATENS];
+    int axis;          /* of the load: 2 = z, 1 = y */
+    double sense;      /* +1 compression, -1 tension */
+    double length;     /* m, distance of the platens at the start */
+    double section;    /* m2, area that force is divided by */
+    bool has_gauge[3]; /* grains enough, far enough apart for a strain along x, y, z */
+    BRC_RIG_SCALARS(BRC_SCALAR_MEMBER)
+    struct brc_curve {
+        BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+        struct brc_table table;
+    } curve;
+};
+
+struct brc_sim {
+    struct brc_context *ctx;
+    struct brc_model model; /* complete: every operation is set */
+    void *params;           /* the model's parameter struct; owned */
+    void *state;            /* the model's private memory */
+    const struct brc_specimen *specimen;
+    struct brc_run_params run;
+    struct brc_bodies bodies;
+    struct brc_contacts pairs, platens;
+    struct brc_events events;
+    struct brc_ledger ledger;
+    struct brc_rig rig;
+    BRC_SIM_SCALARS(BRC_SCALAR_MEMBER)
+    double skin;          /* m */
+    double damping_alpha; /* local damping in use: 0 in the dynamic regime */
+    bool has_mean;        /* the mean velocities are kept */
+    bool spares_mean;     /* once the start is settled, local damping leaves them alone */
+    double mass_checked;  /* kg, sum of the masses at the last look at the eigenfrequencies */
+    int64_t k_seen[2];    /* k_version of pairs and platens when dt or masses were last set */
+};
+
+/* A scalar of struct brc_sim (ledger and rig included) by its offset. */
+struct brc_scalar {
+    const char *name;
+    enum brc_type type;
+    const char *unit;
+    const char *meaning;
+    size_t offset;
+};
+extern const struct brc_scalar brc_sim_scalars[];
+extern const int brc_sim_n_scalars;
+
+/* Builds bodies, platens, contacts and the first forces. params is the model's filled parameter
+ * struct (copied); specimen must outlive the simulation. Nothing is left behind on failure. */
+int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
+                   const void *params, const struct brc_specimen *specimen,
+                   const struct brc_test_params *test, const struct brc_run_params *run);
+/* The tables of a model's state without a row, for reading files; nothing else of it may be used.
+ */
+int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model);
+void brc_sim_free(struct brc_sim *sim);
+/* Grain-platen pairs with (x - platen) . n < reach + skin; platen bodies follow the grains. */
+int brc_sim_near_platens(const struct brc_sim *sim, struct brc_candidates *out);
+/* Forces of all contacts after a motion, and their sums on the bodies: part of a step. */
+void brc_sim_forces(struct brc_sim *sim);
+/* One step: drift, candidates, forces, loading, kick, sample. */
+int brc_sim_step(struct brc_sim *sim);
+/* After all tables and scalars of a created simulation have been replaced by saved ones: derives
+ * what is not saved (adjacency, counts, the model's private memory). */
+int brc_sim_restore(struct brc_sim *sim);
+/* 64-bit hash over bodies, contacts, points, events, rig and ledger. */
+uint64_t brc_sim_hash(const struct brc_sim *sim);
+
+/* Platen of a body number (a platen body). */
+static inline const struct brc_platen *brc_sim_platen(const struct brc_sim *sim, int32_t body)
+{
+    return &sim->rig.platen[(size_t)body - sim->bodies.n_grains];
+}
+
+#endif

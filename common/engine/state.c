@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/engine/state.h"
+
+static void add_table(struct brc_state *s, const char *path, struct brc_table *table, bool is_fixed)
+{
+    s->part[s->n++] = (struct brc_state_part){
+        .path = path, .set = table->set, .table = table, .n = table->n, .is_fixed = is_fixed};
+}
+
+/* The declared scalars of the simulation, seen as one row of a struct. */
+static void add_scalars(struct brc_state *s, struct brc_sim *sim)
+{
+    int n = brc_sim_n_scalars < BRC_STATE_MAX_SCALARS ? brc_sim_n_scalars : BRC_STATE_MAX_SCALARS;
+    for (int i = 0; i < n; i++) {
+        const struct brc_scalar *scalar = &brc_sim_scalars[i];
+        s->scalars[i] =
+            (struct brc_field){scalar->name,    scalar->type,  1, BRC_STATE, scalar->unit,
+                               scalar->meaning, scalar->offset};
+    }
+    s->part[s->n++] = (struct brc_state_part){.path = "scalars",
+                                              .set = {s->scalars, n, sizeof *sim},
+                                              .base = sim,
+                                              .n = 1,
+                                              .is_fixed = true};
+}
+
+void brc_state_list(struct brc_sim *sim, struct brc_state *state)
+{
+    state->n = 0;
+    add_scalars(state, sim);
+    add_table(state, "bodies", &sim->bodies.table, true);
+    add_table(state, "bodies/model", &sim->bodies.model, true);
+    add_table(state, "pairs", &sim->pairs.table, false);
+    add_table(state, "pairs/model", &sim->pairs.model, false);
+    add_table(state, "pairs/points", &sim->pairs.points, false);
+    add_table(state, "platens", &sim->platens.table, false);
+    add_table(state, "platens/model", &sim->platens.model, false);
+    add_table(state, "platens/points", &sim->platens.points, false);
+    add_table(state, "events", &sim->events.table, false);
+    add_table(state, "curve", &sim->rig.curve.table, false);
+}
+
+void *brc_state_value(const struct brc_state_part *part, int field, size_t row)
+{
+    const struct brc_field *f = &part->set.fields[field];
+    if (part->table)
+        return (char *)brc_table_column(part->table, field) + row * brc_field_size(f);
+    return (char *)part->base + row * part->set.owner_size + f->offset;
+}

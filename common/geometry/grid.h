@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Broad phase: pairs of bodies whose bounding spheres come within a skin, sorted by (low, high).
+ * Cells are hashed, so memory is bounded by the number of bodies wherever they are. */
+#ifndef BRC_GRID_H
+#define BRC_GRID_H
+
+#include "common/base/error.h"
+
+/* Sorted pairs (low, high) of bodies whose bounding spheres come within the skin of each other. */
+struct brc_candidates {
+    size_t n, cap;
+    int32_t (*pair)[2];
+};
+
+int brc_candidates_add(struct brc_context *ctx, struct brc_candidates *c, size_t a, size_t b);
+void brc_candidates_free(struct brc_candidates *c);
+/* Pairs with |x_i - x_j| < reach_i + reach_j + skin. Memory in out is reused. */
+int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *reach, size_t n,
+                   double skin, struct brc_candidates *out);
+
+#endif

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Puts values into the text of a case, so that what a run keeps says what has run. The user's
+ * words, comments and layout stay: a value takes the place of the one before, a key that the file
+ * does not give is added behind the last of its section. */
+#include "common/input/casefile.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Bytes [begin, end) of the text become a line break (where there is one), blanks and the parts. */
+struct edit {
+    size_t begin, end;
+    const char *line;
+    int indent;
+    const char *part[6];
+};
+
+/* A value that YAML takes as it is, in every place. */
+static bool is_plain(const char *value)
+{
+    const char *first = value + strspn(value, "+-.");
+    size_t n = strlen(value);
+    return first - value < 2 && isalnum((unsigned char)*first) && value[n - 1] != ' ' &&
+           strcmp(value, "null") != 0 &&
+           value[strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                               " +-./_^*")] == '\0';
+}
+
+/* Line breaks of Unicode and what YAML does not print are written as escapes. */
+static const char *escape(const char *c)
+{
+    static const char *const list[][2] = {{"\"", "\\\""},
+                                          {"\\", "\\\\"},
+                                          {"\xe2\x80\xa8", "\\u2028"},
+                                          {"\xe2\x80\xa9", "\\u2029"},
+                                          {"\xef\xbf\xbe", "\\ufffe"},
+                                          {"\xef\xbf\xbf", "\\uffff"}};
+    for (size_t i = 0; i < sizeof list / sizeof list[0]; i++)
+        if (strncmp(c, list[i][0], strlen(list[i][0])) == 0)
+            return list[i][1];
+    return NULL;
+}
+
+/* The value as YAML reads it back; allocated, NULL when out of memory. */
+static char *quote(struct brc_context *ctx, const char *value)
+{
+    char *text = brc_alloc(ctx, 6 * strlen(value) + 3, 1), *at = text;
+    if (!text || is_plain(value))
+        return text ? strcpy(text, value) : NULL;
+    *at++ = '"';
+    for (const char *c = value; *c;) {
+        const char *escaped = escape(c);
+        size_t n = escaped ? strlen(escaped) : 1;
+        for (size_t i = 0; i < n; i++)
+            *at++ = escaped ? escaped[i] : c[i];
+        c += escaped && (unsigned char)*c >= 0x80 ? 3 : 1;
+    }
+    strcpy(at, "\"");
+    return text;
+}
+
+static char *edited_text(struct brc_context *ctx, const char *old, const struct edit *e)
+{
+    size_t n_parts = 0, size = strlen(old) + (size_t)e->indent + 4, n = e->begin;
+    for (; n_parts < sizeof e->part / sizeof e->part[0] && e->part[n_parts]; n_parts++)
+        size += strlen(e->part[n_parts]);
+    char *text = brc_alloc(ctx, size, 1);
+    if (!text)
+        return NULL;
+    memcpy(text, old, n);
+    n += (size_t)sprintf(text + n, "%s%*s", e->line ? e->line : "", e->indent, "");
+    for (size_t i = 0; i < n_parts; i++)
+        n += (size_t)sprintf(text + n, "%s", e->part[i]);
+    /* a comment that followed a bracket or a quote would be taken for a part of a plain value */
+    sprintf(text + n, "%s%s", old[e->end] == '#' ? " " : "", old + e->end);
+    return text;
+}
+
+/* Makes the case anew from the edited text. */
+static int apply(struct brc_context *ctx, struct brc_case *c, const struct edit *e)
+{
+    struct brc_case fresh;
+    char *text = edited_text(ctx, c->text, e);
+    if (!text)
+        return BRC_ERR_MEMORY;
+    int code = brc_case_parse(ctx, c->path, text, strlen(text), &fresh);
+    free(text);
+    brc_case_free(code == 0 ? c : &fresh);
+    if (code == 0)
+        *c = fresh;
+    return code;
+}
+
+/* `key: value` behind the last key of a mapping. */
+static int append(struct brc_context *ctx, struct brc_case *c, const struct brc_case_place *place,
+                  const char *key, const char *value)
+{
+    size_t at = place->end;
+    if (place->form == BRC_CASE_NULL)
+        return apply(ctx, c,
+                     &(struct edit){place->begin, at, NULL, 1, {"{", key, ": ", value, "}"}});
+    if (place->form == BRC_CASE_EMPTY)
+        return apply(ctx, c, &(struct edit){at, at, NULL, 0, {key, ": ", value}});
+    if (place->form == BRC_CASE_FLOW)
+        return apply(ctx, c, &(struct edit){at, at, ",", 1, {key, ": ", value}});
+    at += strcspn(c->text + at, "\r\n");
+    const char *line = c->text[at] == '\r' ? "\r\n" : "\n";
+    return apply(ctx, c, &(struct edit){at, at, line, place->indent, {key, ": ", value}});
+}
+
+/* The section, empty, behind the last one; its keys then stand in braces. */
+static int add_to_section(struct brc_context *ctx, struct brc_case *c, const char *section,
+                          const char *key, const char *value)
+{
+    if (!*section)
+        return append(ctx, c, &c->root, key, value);
+    const struct brc_case_place *place = brc_case_find_section(c, section);
+    if (!place) {
+        BRC_TRY(append(ctx, c, &c->root, section, "{}"));
+        place = brc_case_find_section(c, section);
+    }
+    if (!place)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "the section %s was added, but is not found", section);
+    return append(ctx, c, place, key, value);
+}
+
+/* A key that the file gives nowhere; `rule` of a nested mapping stands for the mapping's own key.
+ */
+static int add(struct brc_context *ctx, struct brc_case *c, const char *section, const char *key,
+               const char *value)
+{
+    char nested[2 * BRC_CASE_KEY_SIZE];
+    snprintf(nested, sizeof nested, "%s.%s", section, key);
+    const struct brc_case_place *place = brc_case_find_section(c, nested);
+    return place ? append(ctx, c, place, "rule", value)
+                 : add_to_section(ctx, c, section, key, value);
+}
+
+/* Is the entry all that its mapping holds? */
+static bool is_alone(const struct brc_case *c, const struct brc_case_entry *e)
+{
+    const char *name = e->place < 0 ? "" : c->sections[e->place].name;
+    size_t n = strlen(name);
+    for (size_t i = 0; i < c->n; i++)
+        if (&c->entries[i] != e && c->entries[i].place == e->place)
+            return false;
+    for (size_t i = 0; i < c->n_sections; i++) /* nested mappings */
+        if (n == 0 || (strncmp(c->sections[i].name, name, n) == 0 && c->sections[i].name[n] == '.'))
+            return false;
+    return true;
+}
+
+/* From its key on to the comma behind it, where there is one. */
+static struct edit flow_piece(const char *text, const struct brc_case_entry *e)
+{
+    size_t end = e->end + strspn(text + e->end, " \t\r\n");
+    return (struct edit){e->key_begin, text[end] == ',' ? end + 1 : e->end, NULL, 0, {""}};
+}
+
+/* Its whole lines. */
+static struct edit block_piece(const char *text, const struct brc_case_entry *e)
+{
+    size_t begin = e->key_begin, end = e->end + strcspn(text + e->end, "\n");
+    while (begin > 0 && text[begin - 1] == ' ')
+        begin--;
+    return (struct edit){begin, end + (text[end] == '\n'), NULL, 0, {""}};
+}
+
+int brc_case_remove(struct brc_context *ctx, struct brc_case *c, const char *section,
+                    const char *key, struct brc_param_list list)
+{
+    const struct brc_case_entry *e = brc_case_find_entry(c, section, key, list);
+    if (!e)
+        return 0;
+    const struct brc_case_place *place = e->place < 0 ? &c->root : &c->sections[e->place];
+    struct edit edit = place->form == BRC_CASE_FLOW ? flow_piece(c->text, e)
+                       : is_alone(c, e) ? (struct edit){e->key_begin, e->end, NULL, 0, {"{}"}}
+                                        : block_piece(c->text, e);
+    return apply(ctx, c, &edit);
+}
+
+int brc_case_write(struct brc_context *ctx, struct brc_case *c, const char *section,
+                   const char *key, struct brc_param_list list, const char *value)
+{
+    const struct brc_case_entry *old = brc_case_find_entry(c, section, key, list);
+    char *text = quote(ctx, value);
+    int code = BRC_ERR_MEMORY;
+    if (text && old)
+        code = apply(ctx, c, &(struct edit){old->begin, old->end, NULL, old->indent, {text}});
+    else if (text)
+        code = add(ctx, c, section, key, text);
+    free(text);
+    return code;
+}

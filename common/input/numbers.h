@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text files of numbers: one row a line, blanks between; '#' begins a comment. */
+#ifndef BRC_NUMBERS_H
+#define BRC_NUMBERS_H
+
+#include "common/base/error.h"
+
+struct brc_numbers {
+    size_t n;      /* rows */
+    int width;     /* values a row */
+    double *value; /* [n * width] */
+    int *line;     /* of each row in the file, 1 is the first */
+};
+
+enum { BRC_NUMBERS_MAX_WIDTH = 8, BRC_NUMBERS_MAX_ROWS = 10000000 };
+
+/* Reads rows of at least low and at most high finite numbers, all rows alike. key names the key of
+ * the case that gave the path, form what a row is ("nx ny nz d"). */
+int brc_numbers_read(struct brc_context *ctx, const char *key, const char *path, const char *form,
+                     int low, int high, struct brc_numbers *out);
+void brc_numbers_free(struct brc_numbers *t);
+
+#endif

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameter lists: each case-file section (specimen, test, run, output, and one per model) is
+ * declared once as an X-macro; the struct, the reader, the range checks and the reference printed
+ * by `breccia params` all come from it.
+ *
+ *     #define VGCM_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                        \
+ *         REAL(e_bar, "Pa", "48.8 GPa", "(0, inf)", "contact modulus E-bar, eq 28")          \
+ *         CHOICE(interaction, "all|gap|area", "gap", "which facets are contacts")
+ *     struct law_params { BRC_PARAM_MEMBERS(LAW_PARAMS) };
+ *     #define BRC_OWNER struct law_params
+ *     static const struct brc_param law_param_list[] = { BRC_PARAM_LIST(LAW_PARAMS) };
+ *     #undef BRC_OWNER
+ */
+#ifndef BRC_PARAMS_H
+#define BRC_PARAMS_H
+
+#include "common/base/error.h"
+
+#include <stdio.h>
+
+enum brc_param_kind {
+    BRC_REAL,   /* double, SI; NAN: `auto`, where that is the default */
+    BRC_INT,    /* int */
+    BRC_CHOICE, /* int: position in the |-separated list of choices */
+    BRC_FLAG,   /* int: on = 1, off = 0 */
+    BRC_TEXT,   /* char[BRC_TEXT_SIZE] */
+    BRC_REAL3,  /* double[3], SI */
+    BRC_INT3    /* int[3] */
+};
+enum { BRC_TEXT_SIZE = 256 };
+/* Default text of a BRC_REAL that its owner finds from other keys and the specimen. */
+#define BRC_AUTO "auto"
+
+struct brc_param {
+    const char *key;
+    enum brc_param_kind kind;
+    const char *unit;         /* SI unit as UDUNITS-2 reads it; "1" for a pure number */
+    const char *default_text; /* as written in a case file; NULL: must be given */
+    const char *range;        /* interval in SI units, "(0, inf)", "[0, 1]"; NULL: any */
+    const char *choices;      /* CHOICE only */
+    size_t offset;
+    const char *meaning;
+    /* Where other keys decide whether this one has a meaning, else NULL: clauses "key=a|b" between
+     * commas, each of which must hold; " or " stands between the parts of a clause. A key of
+     * another section is "section.key"; a value is a choice, auto or 0. To give the key elsewhere
+     * is an error, see applies.h. */
+    const char *applies;
+};
+
+struct brc_param_list {
+    const struct brc_param *params;
+    int n;
+    size_t owner_size;
+};
+#define BRC_PARAMS(list, owner)                                      \
+    {                                                                \
+        (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner) \
+    }
+
+/* After what is named here come the meaning and, where it is not always, when the key applies. */
+#define BRC_PARAM_M_REAL(name, u, d, r, ...)  double name;
+#define BRC_PARAM_M_INT(name, d, r, ...)      int name;
+#define BRC_PARAM_M_CHOICE(name, c, d, ...)   int name;
+#define BRC_PARAM_M_FLAG(name, d, ...)        int name;
+#define BRC_PARAM_M_TEXT(name, d, ...)        char name[BRC_TEXT_SIZE];
+#define BRC_PARAM_M_REAL3(name, u, d, r, ...) double name[3];
+#define BRC_PARAM_M_INT3(name, d, r, ...)     int name[3];
+#define BRC_PARAM_MEMBERS(LIST)                                                   \
+    LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_CHOICE, BRC_PARAM_M_FLAG, \
+         BRC_PARAM_M_TEXT, BRC_PARAM_M_REAL3, BRC_PARAM_M_INT3)
+
+#define BRC_PARAM_ROW(name, k, u, d, r, c, ...) \
+    {.key = #name,                              \
+     .kind = k,                                 \
+     .unit = u,                                 \
+     .default_text = d,                         \
+     .range = r,                                \
+     .choices = c,                              \
+     .offset = offsetof(BRC_OWNER, name),       \
+     .meaning = __VA_ARGS__},
+#define BRC_PARAM_L_REAL(name, u, d, r, ...) \
+    BRC_PARAM_ROW(name, BRC_REAL, u, d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_INT(name, d, r, ...) BRC_PARAM_ROW(name, BRC_INT, "1", d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_CHOICE(name, c, d, ...) \
+    BRC_PARAM_ROW(name, BRC_CHOICE, "1", d, NULL, c, __VA_ARGS__)
+#define BRC_PARAM_L_FLAG(name, d, ...) \
+    BRC_PARAM_ROW(name, BRC_FLAG, "1", d, NULL, "off|on", __VA_ARGS__)
+#define BRC_PARAM_L_TEXT(name, d, ...) \
+    BRC_PARAM_ROW(name, BRC_TEXT, "1", d, NULL, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_REAL3(name, u, d, r, ...) \
+    BRC_PARAM_ROW(name, BRC_REAL3, u, d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_L_INT3(name, d, r, ...) \
+    BRC_PARAM_ROW(name, BRC_INT3, "1", d, r, NULL, __VA_ARGS__)
+#define BRC_PARAM_LIST(LIST)                                                      \
+    LIST(BRC_PARAM_L_REAL, BRC_PARAM_L_INT, BRC_PARAM_L_CHOICE, BRC_PARAM_L_FLAG, \
+         BRC_PARAM_L_TEXT, BRC_PARAM_L_REAL3, BRC_PARAM_L_INT3)
+
+/* Fills a parameter struct with the defaults; keys without a default are left zero. */
+int brc_params_defaults(struct brc_context *ctx, struct brc_param_list list, void *values);
+/* Sets one key from text ("48.8 GPa"); where names the place for the message ("file.yaml:12"). */
+int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
+                   const char *section, const char *key, const char *text, const char *where);
+/* Text of a value, in the unit of its default where it has one; returns buffer. */
+const char *brc_params_text(const struct brc_param *p, const void *values, char *buffer,
+                            size_t size);
+/* Name of the present choice of a CHOICE or FLAG. */
+const char *brc_params_choice(const struct brc_param *p, const void *values, char *buffer,
+                              size_t size);
+/* Value of a quantity text ("48.8 GPa") in the SI unit given. */
+int brc_params_quantity(struct brc_context *ctx, const char *text, const char *unit, double *value,
+                        const char *where);
+/* The param of this key, NULL when there is none; the nearest key by edit distance, NULL when none
+ * is near. */
+const struct brc_param *brc_params_find(struct brc_param_list list, const char *key);
+const char *brc_params_nearest(struct brc_param_list list, const char *key);
+/* The param whose meaning has most of the words of the key, NULL when it has none of 4 letters. */
+const struct brc_param *brc_params_meant(struct brc_param_list list, const char *key);
+/* Edit distance without regard to case, INT_MAX for names of 128 bytes or more; is_near tells
+ * whether it is small enough for "did you mean". */
+int brc_params_distance(const char *a, const char *b);
+bool brc_params_is_near(const char *text, int distance);
+/* Reference table: key, default, allowed, unit, meaning. */
+void brc_params_print(FILE *out, const char *title, struct brc_param_list list);
+/* Judges a declaration: keys unique and in snake case, units known, ranges readable, defaults in
+ * range, and each default the same after writing and reading. For tests over every list. */
+int brc_params_check_list(struct brc_context *ctx, const char *title, struct brc_param_list list);
+
+#endif

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/input/units.h"
+
+#include <udunits2.h>
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+static ut_system *unit_system; /* lives until the program ends */
+
+/* Reads the unit data base once; degrees get the short name that rock mechanics uses. */
+static int system_open(struct brc_context *ctx)
+{
+    if (unit_system)
+        return 0;
+    ut_set_error_message_handler(ut_ignore);
+    unit_system = ut_read_xml(NULL);
+    if (!unit_system)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "cannot read the UDUNITS-2 data base; install libudunits2-data, or set "
+                 "UDUNITS2_XML_PATH to udunits2.xml");
+    ut_unit *degree = ut_parse(unit_system, "arc_degree", UT_UTF8);
+    if (degree) {
+        ut_map_name_to_unit("deg", UT_ASCII, degree);
+        ut_free(degree);
+    }
+    return 0;
+}
+
+/* UDUNITS reads "m 3" as 3 m and "m^0.5" as 5: a digit may only be an exponent or the 1 of "1/s".
+ */
+static bool has_stray_number(const char *text)
+{
+    for (const char *c = text; *c; c++) {
+        if (!isdigit((unsigned char)*c) || (c == text && c[1] == '/' && *c == '1'))
+            continue;
+        if (c == text || (!isalnum((unsigned char)c[-1]) && !strchr("^-+", c[-1])))
+            return true;
+    }
+    return strchr(text, '@') != NULL;
+}
+
+static ut_unit *unit_parse(const char *text)
+{
+    if (strcmp(text, "1") == 0)
+        return ut_get_dimensionless_unit_one(unit_system);
+    return has_stray_number(text) ? NULL : ut_parse(unit_system, text, UT_UTF8);
+}
+
+/* Same dimension, the reciprocal excluded: ut_are_convertible alone would take s for 1/s. */
+static bool is_same_dimension(const ut_unit *a, const ut_unit *b)
+{
+    ut_unit *ratio = ut_divide(a, b);
+    bool same = ratio && ut_is_dimensionless(ratio) && ut_are_convertible(a, b);
+    if (ratio)
+        ut_free(ratio);
+    return same;
+}
+
+/* Radians count as dimensionless in UDUNITS; here a pure number is no angle, and the reverse. */
+static bool is_angle(const ut_unit *unit)
+{
+    char text[128];
+    int n = ut_format(unit, text, sizeof text, UT_DEFINITION | UT_ASCII);
+    return n > 0 && n < (int)sizeof text && strstr(text, "rad") != NULL;
+}
+
+/* False when the conversion is more than a factor. */
+static bool get_factor(ut_unit *from, ut_unit *to, double *factor)
+{
+    cv_converter *converter = ut_get_converter(from, to);
+    if (!converter)
+        return false;
+    bool is_linear = cv_convert_double(converter, 0.0) == 0.0;
+    *factor = cv_convert_double(converter, 1.0);
+    cv_free(converter);
+    return is_linear && isfinite(*factor) && *factor > 0;
+}
+
+static int factor_between(struct brc_context *ctx, ut_unit *a, ut_unit *b, const char *from,
+                          const char *to, const char *where, double *factor)
+{
+    if (!a)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: '%.60s' is not a unit; expected a unit of the dimension of %s (capitals "
+                 "matter: MPa, mm, kg)",
+                 where, from, to);
+    if (!is_same_dimension(a, b) || is_angle(a) != is_angle(b)) {
+        char text[128];
+        int n = ut_format(a, text, sizeof text, UT_DEFINITION | UT_ASCII);
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: the unit '%.60s' has the wrong dimension (it is %s); expected a unit of the "
+                 "dimension of %s",
+                 where, from, n > 0 && n < (int)sizeof text ? text : "no plain unit", to);
+    }
+    if (!get_factor(a, b, factor))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: the unit '%.60s' is not a plain multiple of %s (offsets and dates are not "
+                 "accepted)",
+                 where, from, to);
+    return 0;
+}
+
+int brc_units_factor(struct brc_context *ctx, const char *from, const char *to, const char *where,
+                     double *factor)
+{
+    BRC_TRY(system_open(ctx));
+    ut_unit *b = unit_parse(to);
+    if (!b)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: '%s' is declared as a unit but is none", where, to);
+    ut_unit *a = unit_parse(from);
+    int code = factor_between(ctx, a, b, from, to, where, factor);
+    if (a)
+        ut_free(a);
+    ut_free(b);
+    return code;
+}

@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/output/frames.h"
+
+#include "common/output/vtk.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096 };
+
+#define BRC_OWNER struct brc_frames
+static const struct brc_field frame_fields[] = {BRC_FRAME_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+static const char *const kind_name[BRC_N_FRAME_KINDS] = {"grains", "bonds", "contacts"};
+
+void brc_frames_init(struct brc_frames *f)
+{
+    const struct brc_fieldset set = BRC_FIELDSET(frame_fields, struct brc_frames);
+    memset(f, 0, sizeof *f);
+    brc_table_init(&f->table, "frames", set, f);
+}
+
+static void drop_peak_mesh(struct brc_frames *f)
+{
+    if (f->peak)
+        brc_frame_mesh_free(f->peak);
+    free(f->peak);
+    f->peak = NULL;
+}
+
+void brc_frames_free(struct brc_frames *f)
+{
+    drop_peak_mesh(f);
+    brc_table_free(&f->table);
+}
+
+bool brc_frames_are_on(const struct brc_output_params *p)
+{
+    return p->frames > 0 || p->frame_strain > 0 || p->frame_steps > 0;
+}
+
+/* ---- the table ----------------------------------------------------------------------------- */
+
+/* The force at a row of the curve is its mean, which makes the peak. */
+static bool is_row(const struct brc_sim *sim)
+{
+    const struct brc_curve *c = &sim->rig.curve;
+    return c->table.n > 0 && c->step[c->table.n - 1] == sim->step;
+}
+
+static void fill_row(struct brc_frames *f, size_t i, const struct brc_sim *sim, uint8_t role)
+{
+    const struct brc_curve *c = &sim->rig.curve;
+    bool has_means = is_row(sim);
+    f->step[i] = sim->step;
+    f->time[i] = sim->time;
+    f->strain[i] = sim->rig.strain;
+    f->force[i] = has_means ? c->force[c->table.n - 1] : sim->rig.force;
+    f->broken[i] = (int64_t)sim->events.table.n;
+    f->role[i] = role;
+}
+
+/* The row of this very step, made where there is none. */
+static int add_row(struct brc_context *ctx, struct brc_frames *f, const struct brc_sim *sim,
+                   uint8_t role)
+{
+    size_t n = f->table.n;
+    if (n > 0 && f->step[n - 1] == sim->step) {
+        f->role[n - 1] |= role;
+        return 0;
+    }
+    BRC_TRY(brc_table_resize(ctx, &f->table, n + 1));
+    fill_row(f, n, sim, role);
+    return 0;
+}
+
+/* Takes a role from a row, and the row away when it has none left. */
+static int take_role(struct brc_context *ctx, struct brc_frames *f, size_t i, uint8_t role)
+{
+    f->role[i] &= (uint8_t)~role;
+    if (f->role[i] != 0)
+        return 0;
+    for (; i + 1 < f->table.n; i++) {
+        f->step[i] = f->step[i + 1];
+        f->time[i] = f->time[i + 1];
+        f->strain[i] = f->strain[i + 1];
+        f->force[i] = f->force[i + 1];
+        f->broken[i] = f->broken[i + 1];
+        f->role[i] = f->role[i + 1];
+    }
+    return brc_table_resize(ctx, &f->table, f->table.n - 1);
+}
+
+/* The row before i of a role, SIZE_MAX where there is none. */
+static size_t row_before(const struct brc_frames *f, size_t i, uint8_t role)
+{
+    while (i-- > 0)
+        if (f->role[i] & role)
+            return i;
+    return SIZE_MAX;
+}
+
+/* ---- which states are frames --------------------------------------------------------------- */
+
+static double part(double from, double to, double all)
+{
+    return all > 0 ? fabs(to - from) / all : 0;
+}
+
+/* How much has happened between two frames, of all that has so far. Without platens steps have to
+ * do for strain and load. */
+static double distance(const struct brc_frames *f, size_t i, size_t j, const struct brc_sim *sim)
+{
+    double broken = part((double)f->broken[i], (double)f->broken[j], (double)sim->events.table.n);
+    if (sim->rig.n_platens == 0)
+        return broken + part((double)f->step[i], (double)f->step[j], (double)sim->step);
+    return broken + part(f->strain[i], f->strain[j], sim->rig.strain) +
+           part(f->force[i], f->force[j], sim->rig.force_peak);
+}
+
+/* The present state, the last row, becomes one of at most `most` frames: where there are as many,
+ * in place of the one that leaves the smallest gap. The newest gives way to it only where it stands
+ * much too near to the one before. The first stays. */
+static int choose_by_gaps(struct brc_context *ctx, struct brc_frames *f, const struct brc_sim *sim,
+                          size_t most, bool *is_taken)
+{
+    size_t before = SIZE_MAX, middle = SIZE_MAX, least = SIZE_MAX, newest = SIZE_MAX, n = 0;
+    double least_gap = HUGE_VAL, newest_gap = 0, all = 0;
+    for (size_t i = 0; i < f->table.n; i++) {
+        bool is_now = i + 1 == f->table.n;
+        if (!is_now && !(f->role[i] & BRC_FRAME_SPACED))
+            continue;
+        double gap = middle != SIZE_MAX ? distance(f, middle, i, sim) : 0;
+        double without = before != SIZE_MAX ? distance(f, before, i, sim) : HUGE_VAL;
+        if (without < least_gap) {
+            least_gap = without;
+            least = middle;
+        }
+        all += gap;
+        newest = is_now ? middle : newest;
+        newest_gap = is_now ? newest_gap : gap;
+        n += !is_now;
+        before = middle;
+        middle = i;
+    }
+    *is_taken = n < most ||
+                (least != SIZE_MAX && (least != newest || newest_gap < 0.5 * all / (double)most));
+    return *is_taken && n >= most ? take_role(ctx, f, least, BRC_FRAME_SPACED) : 0;
+}
+
+/* Counts each multiple of the interval that has been passed; one that rounding has put just below
+ * counts as reached. */
+static bool has_passed(double from, double to, double every)
+{
+    return floor(to / every + 1e-9) > floor(from / every + 1e-9);
+}
+
+/* The present state is a frame by what has happened since the last one; then it has a row. */
+static int choose(struct brc_context *ctx, struct brc_frames *f, const struct brc_output_params *p,
+                  const struct brc_sim *sim, bool *is_taken)
+{
+    size_t last = row_before(f, f->table.n, BRC_FRAME_SPACED);
+    *is_taken = last == SIZE_MAX;
+    if (*is_taken || p->frame_steps > 0 || p->frame_strain > 0) {
+        if (!*is_taken && p->frame_steps > 0)
+            *is_taken = sim->step / p->frame_steps > f->step[last] / p->frame_steps;
+        else if (!*is_taken)
+            *is_taken = has_passed(f->strain[last], sim->rig.strain, p->frame_strain);
+        return *is_taken ? add_row(ctx, f, sim, BRC_FRAME_SPACED) : 0;
+    }
+    if (!is_row(sim) || f->step[last] == sim->step)
+        return 0;
+    BRC_TRY(add_row(ctx, f, sim, 0));
+    BRC_TRY(choose_by_gaps(ctx, f, sim, p->frames > 2 ? (size_t)p->frames - 1 : 1, is_taken));
+    if (*is_taken)
+        f->role[f->table.n - 1] |= BRC_FRAME_SPACED;
+    return *is_taken ? 0 : take_role(ctx, f, f->table.n - 1, 0);
+}
+
+static bool is_new_peak(const struct brc_sim *sim)
+{
+    const struct brc_rig *rig = &sim->rig;
+    return is_row(sim) && rig->curve.force[rig->curve.table.n - 1] == rig->force_peak &&
+           rig->curve.strain[rig->curve.table.n - 1] == rig->strain_peak;
+}
+
+/* The present state is the peak, in place of the one so far. */
+static int move_peak(struct brc_context *ctx, struct brc_frames *f, const struct brc_sim *sim)
+{
+    size_t old = row_before(f, f->table.n, BRC_FRAME_PEAK);
+    if (old != SIZE_MAX && f->step[old] == sim->step)
+        return 0;
+    drop_peak_mesh(f);
+    if (old != SIZE_MAX)
+        BRC_TRY(take_role(ctx, f, old, BRC_FRAME_PEAK));
+    return add_row(ctx, f, sim, BRC_FRAME_PEAK);
+}
+
+/* ---- files --------------------------------------------------------------------------------- */
+
+static int in_frames(struct brc_context *ctx, const char *dir, const char *name,
+                     char path[PATH_SIZE])
+{
+    if (snprintf(path, PATH_SIZE, "%s/frames%s%s", dir, *name ? "/" : "", name) >= PATH_SIZE)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
+    return 0;
+}
+
+/* One file of a frame, with its row (but the role, which may change) as values of the whole. */
+static int write_kind(struct brc_context *ctx, const struct brc_frames *f, size_t i,
+                      const char *dir, enum brc_frame_kind kind, const struct brc_mesh *m,
+                      const struct brc_h5_extra *extra)
+{
+    char path[PATH_SIZE], name[64];
+    struct brc_frames now = *f;
+    now.step += i;
+    now.time += i;
+    now.strain += i;
+    now.force += i;
+    now.broken += i;
+    now.table.columns = &now;
+    now.table.n = 1;
+    now.table.set.n -= 1;
+    brc_vtk_name(name, sizeof name, kind_name[kind], f->step[i]);
+    BRC_TRY(in_frames(ctx, dir, name, path));
+    return brc_vtk_save(ctx, path, m, &now.table, extra->texts, extra->n_texts);
+}
+
+/* The index of each kind, without a peak that is not yet written. */
+static int write_series(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
+{
+    size_t n = 0;
+    int64_t *step = brc_alloc(ctx, f->table.n, sizeof *step);
+    double *time = brc_alloc(ctx, f->table.n, sizeof *time);
+    int code = step && time ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < f->table.n; i++)
+        if (!(f->peak && f->role[i] == BRC_FRAME_PEAK)) {
+            step[n] = f->step[i];
+            time[n++] = f->time[i];
+        }
+    for (int k = 0; code == 0 && k < BRC_N_FRAME_KINDS; k++) {
+        char path[PATH_SIZE], name[64];
+        snprintf(name, sizeof name, "%s.hdf.series", kind_name[k]);
+        code = in_frames(ctx, dir, name, path);
+        if (code == 0)
+            code = brc_vtk_series(ctx, path, kind_name[k], step, time, n);
+    }
+    free(step);
+    free(time);
+    return code;
+}
+
+/* The files of row i, and the index. */
+static int write_meshes(struct brc_context *ctx, struct brc_frames *f, size_t i, const char *dir,
+                        const struct brc_frame_mesh *mesh, const struct brc_h5_extra *extra)
+{
+    char path[PATH_SIZE];
+    const struct brc_mesh *const kinds[BRC_N_FRAME_KINDS] = {&mesh->grains, &mesh->bonds,
+                                                             &mesh->contacts};
+    BRC_TRY(in_frames(ctx, dir, "", path));
+    if (mkdir(path, 0777) != 0 && errno != EEXIST)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot make the folder %s: %s", path, strerror(errno));
+    for (int k = 0; k < BRC_N_FRAME_KINDS; k++) {
+        BRC_TRY(write_kind(ctx, f, i, dir, (enum brc_frame_kind)k, kinds[k], extra));
+        f->last[k] = (struct brc_frame_count){kind_name[k], kinds[k]->n_points, kinds[k]->n_cells};
+    }
+    return write_series(ctx, f, dir);
+}
+
+/* The files of the last row, which is the present state. */
+static int write_now(struct brc_context *ctx, struct brc_frames *f, const char *dir,
+                     const struct brc_sim *sim, const struct brc_h5_extra *extra)
+{
+    struct brc_frame_mesh mesh;
+    int code = brc_frame_mesh_make(ctx, sim, &mesh);
+    if (code == 0)
+        code = write_meshes(ctx, f, f->table.n - 1, dir, &mesh, extra);
+    brc_frame_mesh_free(&mesh);
+    return code;
+}
+
+static int keep_peak(struct brc_context *ctx, struct brc_frames *f, const struct brc_sim *sim)
+{
+    if (f->peak)
+        return 0;
+    f->peak = brc_alloc(ctx, 1, sizeof *f->peak);
+    return f->peak ? brc_frame_mesh_make(ctx, sim, f->peak) : BRC_ERR_MEMORY;
+}
+
+int brc_frames_take(struct brc_context *ctx, struct brc_frames *f, const char *dir,
+                    const struct brc_output_params *p, const struct brc_sim *sim,
+                    const struct brc_h5_extra *extra)
+{
+    bool is_taken;
+    if (!brc_frames_are_on(p))
+        return 0;
+    BRC_TRY(choose(ctx, f, p, sim, &is_taken));
+    bool is_peak = is_new_peak(sim);
+    if (is_peak)
+        BRC_TRY(move_peak(ctx, f, sim));
+    if (is_taken)
+        return write_now(ctx, f, dir, sim, extra);
+    return is_peak && f->role[f->table.n - 1] == BRC_FRAME_PEAK ? keep_peak(ctx, f, sim) : 0;
+}
+
+int brc_frames_flush(struct brc_context *ctx, struct brc_frames *f, const char *dir,
+                     const struct brc_h5_extra *extra)
+{
+    size_t row = row_before(f, f->table.n, BRC_FRAME_PEAK);
+    struct brc_frame_mesh *peak = f->peak;
+    if (!peak || row == SIZE_MAX)
+        return 0;
+    f->peak = NULL; /* so that the index names it */
+    int code = write_meshes(ctx, f, row, dir, peak, extra);
+    f->peak = peak;
+    drop_peak_mesh(f);
+    return code;
+}
+
+int brc_frames_write(struct brc_context *ctx, struct brc_frames *f, const char *dir,
+                     const struct brc_sim *sim, const struct brc_h5_extra *extra)
+{
+    BRC_TRY(add_row(ctx, f, sim, 0));
+    return write_now(ctx, f, dir, sim, extra);
+}
+
+/* "grains_00012.hdf", "grains.hdf.series", and their beginnings "...part". */
+static bool is_ours(const char *name)
+{
+    for (int k = 0; k < BRC_N_FRAME_KINDS; k++) {
+        size_t n = strlen(kind_name[k]);
+        if (strncmp(name, kind_name[k], n) != 0)
+            continue;
+        const char *rest = name + n;
+        size_t digits = *rest == '_' ? strspn(rest + 1, "0123456789") : 0;
+        const char *ending = digits >= 5 ? ".hdf" : ".hdf.series";
+        rest += digits >= 5 ? digits + 1 : 0;
+        n = strlen(ending);
+        if (strncmp(rest, ending, n) == 0 && (!rest[n] || strcmp(rest + n, ".part") == 0))
+            return true;
+    }
+    return false;
+}
+
+bool brc_frames_find(const char *dir, char *name, size_t size)
+{
+    char path[PATH_SIZE];
+    bool is_found = false;
+    DIR *folder = snprintf(path, sizeof path, "%s/frames", dir) < PATH_SIZE ? opendir(path) : NULL;
+    for (struct dirent *entry; folder && !is_found && (entry = readdir(folder));) {
+        is_found = is_ours(entry->d_name);
+        snprintf(name, size, "frames/%s", entry->d_name);
+    }
+    if (folder)
+        closedir(folder);
+    return is_found;
+}
+
+/* "grains_00012.hdf" of a step that the table has not. */
+static bool is_left_over(const struct brc_frames *f, const char *name)
+{
+    const char *digits = strchr(name, '_'), *end = strrchr(name, '.');
+    if (!is_ours(name) || !digits || strcmp(end, ".hdf") != 0)
+        return false;
+    long long step = strtoll(digits + 1, NULL, 10);
+    for (size_t i = 0; i < f->table.n; i++)
+        if (f->step[i] == step)
+            return false;
+    return true;
+}
+
+/* Removes the files of frames in DIR/frames that are not in the table; all where f is NULL. */
+static int remove_files(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
+{
+    char path[PATH_SIZE];
+    int code = 0;
+    BRC_TRY(in_frames(ctx, dir, "", path));
+    DIR *folder = opendir(path);
+    if (!folder)
+        return 0;
+    for (struct dirent *entry; code == 0 && (entry = readdir(folder));) {
+        if (f ? !is_left_over(f, entry->d_name) : !is_ours(entry->d_name))
+            continue;
+        code = in_frames(ctx, dir, entry->d_name, path);
+        if (code == 0 && unlink(path) != 0)
+            code = brc_error_set(ctx, BRC_ERR_IO, __FILE__, __LINE__, "cannot remove %s: %s", path,
+                                 strerror(errno));
+    }
+    closedir(folder);
+    return code;
+}
+
+int brc_frames_sweep(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
+{
+    return remove_files(ctx, f, dir);
+}
+
+int brc_frames_remove(struct brc_context *ctx, const char *dir)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(remove_files(ctx, NULL, dir));
+    BRC_TRY(in_frames(ctx, dir, "", path));
+    rmdir(path); /* stays when it holds what is not ours */
+    return 0;
+}

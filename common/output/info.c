@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/output/info.h"
+
+#include "common/input/input_file.h"
+#include "common/output/io_h5.h"
+#include "common/output/seal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_SIZE = 256, MAX_GROUPS = 64 };
+
+struct info {
+    const struct brc_h5_file *f;
+    FILE *out;
+    int n_groups, now;
+    bool is_first; /* nothing of group `now` has been printed */
+    char group[MAX_GROUPS][NAME_SIZE];
+};
+
+/* One line a text of the provenance; texts of several lines come at the end. */
+static int print_text(const struct info *i, const struct brc_h5_item *item)
+{
+    char *text;
+    const char *name = strrchr(item->path, '/');
+    BRC_TRY(brc_h5_get_text(i->f, item->path, &text));
+    if (!strchr(text, '\n'))
+        fprintf(i->out, "  %-14s %s\n", name ? name + 1 : item->path, text);
+    free(text);
+    return 0;
+}
+
+static int print_texts(void *user, const struct brc_h5_item *item)
+{
+    return item->is_text ? print_text(user, item) : 0;
+}
+
+static size_t group_length(const struct brc_h5_item *item)
+{
+    const char *slash = strrchr(item->path, '/');
+    return slash ? (size_t)(slash - item->path) : 0;
+}
+
+static bool is_of(const struct brc_h5_item *item, const char *group)
+{
+    size_t length = group_length(item);
+    return strlen(group) == length && strncmp(group, item->path, length) == 0;
+}
+
+/* Lists the groups in the order in which they come up: groups in groups come in between. */
+static int list_group(void *user, const struct brc_h5_item *item)
+{
+    struct info *i = user;
+    for (int k = 0; k < i->n_groups; k++)
+        if (is_of(item, i->group[k]))
+            return 0;
+    if (item->is_text || i->n_groups == MAX_GROUPS)
+        return 0;
+    char *name = i->group[i->n_groups++];
+    snprintf(name, NAME_SIZE, "%.*s", (int)group_length(item), item->path);
+    return 0;
+}
+
+/* A field of a group with unit and meaning; a single number with its value. */
+static int print_field(void *user, const struct brc_h5_item *item)
+{
+    struct info *i = user;
+    const char *slash = strrchr(item->path, '/');
+    char name[NAME_SIZE], shape[32] = "", value[48] = "";
+    if (item->is_text || !is_of(item, i->group[i->now]))
+        return 0;
+    if (i->is_first && item->rows != 1)
+        fprintf(i->out, "\n%s: %zu rows\n", i->group[i->now], item->rows);
+    else if (i->is_first)
+        fprintf(i->out, "\n%s\n", i->group[i->now]);
+    i->is_first = false;
+    if (item->width > 1)
+        snprintf(shape, sizeof shape, "(%zu)", item->width);
+    if (!isnan(item->value))
+        snprintf(value, sizeof value, " = %.10g", item->value);
+    snprintf(name, sizeof name, "%s%s", slash ? slash + 1 : item->path, shape);
+    fprintf(i->out, "  %-22s %-8s %s%s%s%s%s%s\n", name, item->type, *item->unit ? "[" : "",
+            item->unit, *item->unit ? "]" : "", value, *item->meaning ? "  " : "", item->meaning);
+    return 0;
+}
+
+static int print_case(const struct info *i)
+{
+    char *text;
+    BRC_TRY(brc_h5_get_text(i->f, "provenance/case", &text));
+    fputs("\ncase\n", i->out);
+    for (const char *line = text; *line;) {
+        size_t n = strcspn(line, "\n");
+        fprintf(i->out, "  %.*s\n", (int)n, line);
+        line += n + (line[n] != '\0');
+    }
+    free(text);
+    return 0;
+}
+
+static int find_step(void *user, const struct brc_h5_item *item)
+{
+    double *step = user;
+    const char *slash = strrchr(item->path, '/');
+    if (slash && strcmp(slash, "/step") == 0 && !isnan(item->value))
+        *step = item->value;
+    return 0;
+}
+
+static int print_all(const struct brc_h5_file *f, FILE *out)
+{
+    struct info i = {.f = f, .out = out};
+    char *program;
+    double step = NAN;
+    BRC_TRY(brc_h5_get_text(f, "provenance/program", &program));
+    free(program);
+    BRC_TRY(brc_h5_visit(f, find_step, &step));
+    fprintf(out, "%s: %s of breccia, step %.0f\n\n", f->path,
+            f->seal == &brc_seal_frame ? "frame (VTKHDF)" : "saved state", step);
+    BRC_TRY(brc_h5_visit(f, print_texts, &i));
+    BRC_TRY(brc_h5_visit(f, list_group, &i));
+    for (; i.now < i.n_groups; i.now++) {
+        i.is_first = true;
+        BRC_TRY(brc_h5_visit(f, print_field, &i));
+    }
+    return print_case(&i);
+}
+
+int brc_info_print(struct brc_context *ctx, FILE *out, const char *path)
+{
+    static const struct brc_seal_kind *const kinds[] = {&brc_seal_state, &brc_seal_frame};
+    struct brc_h5_file f;
+    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
+    const struct brc_seal_kind *kind = NULL;
+    FILE *file;
+    BRC_TRY(brc_input_open(ctx, &in, &file, NULL));
+    fclose(file);
+    for (int i = 0; i < 2 && !kind; i++)
+        kind = brc_seal_is_there(path, kinds[i]) ? kinds[i] : NULL;
+    if (!kind)
+        BRC_FAIL(ctx, BRC_ERR_IO,
+                 "%s is neither a saved state nor a frame of breccia, has lost its first bytes, or "
+                 "is of a version before %s",
+                 path, BRC_VERSION);
+    BRC_TRY(brc_h5_open(ctx, path, kind, &f));
+    int code = print_all(&f, out);
+    brc_h5_close(&f);
+    return code;
+}

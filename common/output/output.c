@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/output/output.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define BRC_OWNER struct brc_output_params
+static const struct brc_param output_params[] = {BRC_PARAM_LIST(BRC_OUTPUT_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_output_param_list =
+    BRC_PARAMS(output_params, struct brc_output_params);
+
+enum { PATH_SIZE = 4096, CELL_SIZE = 512 };
+
+/* A text file that is written beside its place and renamed when it is complete. */
+struct draft {
+    FILE *file;
+    char path[PATH_SIZE], temporary[PATH_SIZE];
+};
+
+static int open_draft(struct brc_context *ctx, struct draft *d, const char *path)
+{
+    int n = snprintf(d->path, sizeof d->path, "%s", path);
+    int m = snprintf(d->temporary, sizeof d->temporary, "%s.part", path);
+    if (n >= PATH_SIZE || m >= PATH_SIZE)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", path);
+    d->file = fopen(d->temporary, "w");
+    if (!d->file)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", d->temporary, strerror(errno));
+    return 0;
+}
+
+static int close_draft(struct brc_context *ctx, struct draft *d)
+{
+    bool good = fflush(d->file) == 0 && !ferror(d->file) && fsync(fileno(d->file)) == 0;
+    good = fclose(d->file) == 0 && good;
+    if (good && rename(d->temporary, d->path) == 0)
+        return 0;
+    int reason = errno;
+    unlink(d->temporary);
+    BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", d->path, strerror(reason));
+}
+
+/* ---- JSON ---------------------------------------------------------------------------------- */
+
+static void json_text(FILE *out, const char *text)
+{
+    fputc('"', out);
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+        if (*c == '"' || *c == '\\')
+            fprintf(out, "\\%c", *c);
+        else if (*c < 0x20)
+            fprintf(out, "\\u%04x", *c);
+        else
+            fputc(*c, out);
+    }
+    fputc('"', out);
+}
+
+static void json_number(FILE *out, double value)
+{
+    if (isfinite(value))
+        fprintf(out, "%.17g", value);
+    else
+        fputs("null", out);
+}
+
+static void json_text_entry(FILE *out, const char *name, const char *text)
+{
+    fprintf(out, "  \"%s\": ", name);
+    json_text(out, text);
+    fputs(",\n", out);
+}
+
+static void json_number_entry(FILE *out, const char *name, double value)
+{
+    fprintf(out, "  \"%s\": ", name);
+    json_number(out, value);
+    fputs(",\n", out);
+}
+
+static void json_results(FILE *out, const struct brc_summary *s)
+{
+    fputs("  \"results\": {", out);
+    for (int i = 0; i < s->n_results; i++) {
+        const struct brc_summary_value *r = &s->results[i];
+        fprintf(out, "%s\n    \"%s\": {\"value\": ", i ? "," : "", r->name);
+        json_number(out, r->value);
+        fputs(", \"unit\": ", out);
+        json_text(out, r->unit);
+        if (r->note) {
+            fputs(", \"note\": ", out);
+            json_text(out, r->note);
+        }
+        fputc('}', out);
+    }
+    fputs(s->n_results ? "\n  }\n" : "}\n", out);
+}
+
+/* How many frames there are, and the size of the last one. */
+static void json_frames(FILE *out, const struct brc_summary *s)
+{
+    fprintf(out, "  \"n_frames\": %zu,\n", s->n_frames);
+    if (s->n_frames == 0 || !s->frame[0].name) /* a run that goes on may have written none yet */
+        return;
+    fputs("  \"last_frame\": {", out);
+    for (int k = 0; k < BRC_N_FRAME_KINDS; k++)
+        fprintf(out, "%s\n    \"%s\": {\"n_points\": %zu, \"n_cells\": %zu}", k ? "," : "",
+                s->frame[k].name, s->frame[k].n_points, s->frame[k].n_cells);
+    fputs("\n  },\n", out);
+}
+
+int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s)
+{
+    static const char *const checks[] = BRC_ENERGY_CHECKS;
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    FILE *out = d.file;
+    fputs("{\n", out);
+    json_text_entry(out, "model", s->model);
+    json_text_entry(out, "case", s->case_name);
+    json_text_entry(out, "title", s->title);
+    fprintf(out, "  \"finished\": %s,\n", s->is_finished ? "true" : "false");
+    json_text_entry(out, "ended_by", s->ended_by);
+    fprintf(out, "  \"seed\": %d,\n", s->seed);
+    json_text_entry(out, "version", BRC_VERSION);
+    fprintf(out, "  \"n_grains\": %zu,\n  \"n_facets\": %zu,\n", s->n_grains, s->n_facets);
+    fprintf(out, "  \"n_contacts\": %zu,\n  \"n_contacts_listed\": %zu,\n", s->n_contacts,
+            s->n_contacts_listed);
+    json_number_entry(out, "n_contacts_mean", s->n_contacts_mean);
+    fprintf(out, "  \"n_points\": %zu,\n  \"steps\": %" PRId64 ",\n", s->n_points, s->steps);
+    fprintf(out, "  \"n_fragments\": %zu,\n", s->n_fragments);
+    json_frames(out, s);
+    json_number_entry(out, "dt", s->dt);
+    json_number_entry(out, "cpu_s", s->cpu_s);
+    json_number_entry(out, "wall_s", s->wall_s);
+    json_number_entry(out, "ns_per_contact_step", s->ns_per_contact_step);
+    json_number_entry(out, "energy_residual", s->energy_residual);
+    json_number_entry(out, "energy_drift", s->energy_drift);
+    json_text_entry(out, "energy_check", checks[s->energy_check]);
+    json_number_entry(out, "unbalanced_max", s->unbalanced_max);
+    fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
+    json_results(out, s);
+    fputs("}\n", out);
+    return close_draft(ctx, &d);
+}
+
+const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size)
+{
+    bool is_drift = s->energy_drift > s->energy_residual, is_wrong;
+    is_wrong = s->energy_check == BRC_ENERGY_WRONG;
+    *text = '\0';
+    if (is_wrong || s->energy_check == BRC_ENERGY_DOUBTFUL)
+        snprintf(text, size,
+                 "%s: energy %s of %.3g of the work (above %g %s): take a smaller step "
+                 "(run.mass_margin higher, dynamic: run.dt_margin lower), load more slowly "
+                 "(test.target, test.rate) or, for polyhedra, raise polyhedra.radius "
+                 "or choose features: merged",
+                 s->model, is_drift ? "drift" : "residual",
+                 is_drift ? s->energy_drift : s->energy_residual,
+                 is_wrong ? BRC_ENERGY_ERROR : BRC_ENERGY_DOUBT,
+                 is_wrong ? "the results are wrong" : "the results are doubtful");
+    return text;
+}
+
+const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name)
+{
+    for (int i = 0; i < s->n_results; i++)
+        if (strcmp(s->results[i].name, name) == 0)
+            return &s->results[i];
+    return NULL;
+}
+
+/* ---- CSV ----------------------------------------------------------------------------------- */
+
+void brc_output_cell(FILE *out, const char *text)
+{
+    if (!strpbrk(text, ",\"\r\n")) {
+        fputs(text, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *text; text++)
+        fprintf(out, *text == '"' ? "\"%c" : "%c", *text);
+    fputc('"', out);
+}
+
+static void csv_header(FILE *out, const struct brc_table *t)
+{
+    const char *comma = "";
+    char cell[CELL_SIZE];
+    for (int i = 0; i < t->set.n; i++) {
+        const struct brc_field *f = &t->set.fields[i];
+        for (int j = 0; brc_table_saves(t, i) && j < f->width; j++) {
+            if (f->width == 1)
+                snprintf(cell, sizeof cell, "%s [%s]", f->name, f->unit);
+            else
+                snprintf(cell, sizeof cell, "%s_%d [%s]", f->name, j + 1, f->unit);
+            fputs(comma, out);
+            brc_output_cell(out, cell);
+            comma = ",";
+        }
+    }
+    fputc('\n', out);
+}
+
+static void csv_value(FILE *out, const struct brc_field *f, const void *column, size_t k)
+{
+    switch (f->type) {
+    case BRC_F64:
+        fprintf(out, "%.17g", ((const double *)column)[k]);
+        break;
+    case BRC_I64:
+        fprintf(out, "%" PRId64, ((const int64_t *)column)[k]);
+        break;
+    case BRC_I32:
+        fprintf(out, "%" PRId32, ((const int32_t *)column)[k]);
+        break;
+    case BRC_U8:
+        fprintf(out, "%u", ((const uint8_t *)column)[k]);
+        break;
+    }
+}
+
+void brc_output_table(FILE *out, const struct brc_table *t)
+{
+    csv_header(out, t);
+    for (size_t row = 0; row < t->n; row++) {
+        const char *comma = "";
+        for (int i = 0; i < t->set.n; i++) {
+            const struct brc_field *f = &t->set.fields[i];
+            size_t width = brc_table_saves(t, i) ? (size_t)f->width : 0;
+            for (size_t j = 0; j < width; j++) {
+                fputs(comma, out);
+                csv_value(out, f, brc_table_column(t, i), row * width + j);
+                comma = ",";
+            }
+        }
+        fputc('\n', out);
+    }
+}
+
+int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t)
+{
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    brc_output_table(d.file, t);
+    return close_draft(ctx, &d);
+}
+
+int brc_output_text(struct brc_context *ctx, const char *path, const char *text)
+{
+    struct draft d;
+    BRC_TRY(open_draft(ctx, &d, path));
+    fputs(text, d.file);
+    return close_draft(ctx, &d);
+}

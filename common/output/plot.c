@@ -1,0 +1,472 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/output/plot.h"
+
+#include "common/output/gnuplot.h"
+#include "common/geometry/vec.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = 4096, N_SHADES = 5 };
+
+static const double MM = 1e3; /* pictures are in mm */
+/* of a run's panel in a picture of cracks, in heights of the picture */
+#define PANEL_WIDTH  0.75
+#define PANEL_HEIGHT 0.80
+
+#define BRC_OWNER struct broken_columns
+struct broken_columns {
+    BRC_BROKEN_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+};
+static const struct brc_field broken_fields[] = {BRC_BROKEN_FIELDS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+/* ---- broken area --------------------------------------------------------------------------- */
+
+static double inner_area(const struct brc_facets *f)
+{
+    double area = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0)
+            area += f->area[i];
+    return area;
+}
+
+int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_sim *sim)
+{
+    struct broken_columns column = {0};
+    struct brc_table table;
+    const struct brc_curve *curve = &sim->rig.curve;
+    const struct brc_events *e = &sim->events;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/broken.csv", dir);
+    struct brc_fieldset set = BRC_FIELDSET(broken_fields, column);
+    brc_table_init(&table, "broken", set, &column);
+    BRC_TRY(brc_table_resize(ctx, &table, curve->table.n));
+    double sum[BRC_N_MODES] = {0}, all = inner_area(&sim->specimen->facets);
+    size_t k = 0;
+    for (size_t i = 0; i < curve->table.n; i++) {
+        for (; k < e->table.n && e->step[k] <= curve->step[i]; k++)
+            sum[e->mode[k]] += e->area[k] / all;
+        column.step[i] = curve->step[i];
+        column.strain[i] = curve->strain[i];
+        column.tension[i] = sum[BRC_MODE_TENSION];
+        column.shear[i] = sum[BRC_MODE_SHEAR];
+        column.torsion[i] = sum[BRC_MODE_TORSION];
+    }
+    int code = brc_output_csv(ctx, path, &table);
+    brc_table_free(&table);
+    return code;
+}
+
+/* ---- cracks -------------------------------------------------------------------------------- */
+
+/* Angles of gnuplot's `set view`, and the direction towards the viewer. */
+struct view {
+    double tilt, turn; /* degrees */
+    double to_eye[3], to_light[3];
+};
+
+static struct view choose_view(const struct brc_output_params *output, enum brc_test test)
+{
+    bool top = output->view == BRC_VIEW_TOP ||
+               (output->view == BRC_VIEW_AUTO && test == BRC_TEST_BRAZILIAN);
+    struct view v = {.tilt = top ? 16 : 76, .turn = top ? 0 : 28};
+    double a = v.tilt * BRC_PI / 180, b = v.turn * BRC_PI / 180;
+    brc_set(v.to_eye, sin(a) * sin(b), -sin(a) * cos(b), cos(a));
+    a -= 0.5;
+    b -= 0.6;
+    brc_set(v.to_light, sin(a) * sin(b), -sin(a) * cos(b), cos(a));
+    return v;
+}
+
+/* Broken facets: their mode (-1: not drawn), how many there are and how many are drawn. */
+struct cracks {
+    int8_t *mode; /* [n_facets] */
+    size_t n_broken[BRC_N_MODES], n_drawn[BRC_N_MODES];
+    double area[BRC_N_MODES]; /* m2, broken */
+};
+
+/* How far the two sides of an inner facet have moved against each other at its centroid. */
+static double facet_opening(const struct brc_sim *sim, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double low[3], high[3];
+    if (f->cell[facet][1] < 0)
+        return 0;
+    brc_bodies_carry(&sim->bodies, (size_t)f->cell[facet][0], f->centroid[facet], low);
+    brc_bodies_carry(&sim->bodies, (size_t)f->cell[facet][1], f->centroid[facet], high);
+    brc_sub(high, high, low);
+    return brc_norm(high);
+}
+
+/* The mode with most of the broken area, -1 while less than the part of the facet is broken. */
+static int8_t facet_mode(const double area[BRC_N_MODES], double least)
+{
+    double sum = 0;
+    int most = 0;
+    for (int m = 0; m < BRC_N_MODES; m++) {
+        sum += area[m];
+        most = area[m] > area[most] ? m : most;
+    }
+    return (int8_t)(sum > 0 && sum >= least * (1 - 1e-9) ? most : -1);
+}
+
+/* Takes back the facets that have opened less than the given multiple of the mean. */
+static void drop_closed(const struct brc_sim *sim, double multiple, struct cracks *c)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    double sum = 0;
+    size_t n = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (c->mode[i] >= 0) {
+            sum += facet_opening(sim, i);
+            n++;
+        }
+    for (size_t i = 0; i < f->n_facets; i++) {
+        int mode = c->mode[i];
+        if (mode < 0)
+            continue;
+        c->n_broken[mode]++;
+        c->area[mode] += f->area[i];
+        if (facet_opening(sim, i) * (double)n >= multiple * sum)
+            c->n_drawn[mode]++;
+        else
+            c->mode[i] = -1;
+    }
+}
+
+static int classify(struct brc_context *ctx, const struct brc_sim *sim,
+                    const struct brc_output_params *output, struct cracks *c)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    const struct brc_events *e = &sim->events;
+    *c = (struct cracks){.mode = brc_alloc(ctx, f->n_facets, 1)};
+    double(*area)[BRC_N_MODES] = brc_alloc(ctx, f->n_facets, sizeof *area);
+    if (!c->mode || !area) {
+        free(c->mode);
+        free(area);
+        return BRC_ERR_MEMORY;
+    }
+    for (size_t k = 0; k < e->table.n; k++)
+        if (e->facet[k] >= 0 && (size_t)e->facet[k] < f->n_facets)
+            area[e->facet[k]][e->mode[k]] += e->area[k];
+    for (size_t i = 0; i < f->n_facets; i++)
+        c->mode[i] = facet_mode(area[i], output->facet_part * f->area[i]);
+    drop_closed(sim, output->opening, c);
+    free(area);
+    return 0;
+}
+
+/* Facets whose normals meet the light at like angles share one of N_SHADES colours. */
+static int facet_shade(const struct view *v, const double normal[3])
+{
+    int shade = (int)(fabs(brc_dot(normal, v->to_light)) * N_SHADES);
+    return shade < N_SHADES ? shade : N_SHADES - 1;
+}
+
+/* Colour of a mode, 0xrrggbb, darkened by the shade; the last shade is full. */
+static unsigned mode_colour(int mode, int shade)
+{
+    static const unsigned full[BRC_N_MODES] = {0xe8472b, 0x2f7fd6, 0x2fa84f};
+    double part = 0.55 + 0.45 * shade / (N_SHADES - 1);
+    unsigned colour = 0;
+    for (int shift = 0; shift <= 16; shift += 8)
+        colour |= (unsigned)(part * (double)(full[mode] >> shift & 0xff)) << shift;
+    return colour;
+}
+
+static void put_polygon(FILE *out, const struct brc_facets *f, size_t facet)
+{
+    for (size_t k = f->first[facet]; k < f->first[facet + 1]; k++) {
+        const double *x = f->vertex[f->loop[k]];
+        fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
+    }
+    fputc('\n', out);
+}
+
+/* One data block a mode and shade; used[mode][shade] tells which exist. */
+static void put_cracks(FILE *out, const struct brc_facets *f, const struct cracks *c,
+                       const struct view *v, bool used[BRC_N_MODES][N_SHADES])
+{
+    for (int mode = 0; mode < BRC_N_MODES; mode++) {
+        for (int shade = 0; shade < N_SHADES; shade++) {
+            used[mode][shade] = false;
+            for (size_t i = 0; i < f->n_facets; i++) {
+                if (c->mode[i] != mode || facet_shade(v, f->normal[i]) != shade)
+                    continue;
+                if (!used[mode][shade])
+                    fprintf(out, "$%s_%d << end_of_data\n", brc_mode_name((enum brc_mode)mode),
+                            shade);
+                used[mode][shade] = true;
+                put_polygon(out, f, i);
+            }
+            if (used[mode][shade])
+                fputs("end_of_data\n", out);
+        }
+    }
+}
+
+/* The other face at the edge from a to b, -1 when there is none. */
+static int64_t face_across(const struct brc_convex *c, int32_t a, int32_t b)
+{
+    for (size_t g = 0; g < c->n_faces; g++) {
+        size_t first = c->first[g], n = c->first[g + 1] - first;
+        for (size_t k = 0; k < n; k++)
+            if (c->loop[first + k] == b && c->loop[first + (k + 1) % n] == a)
+                return (int64_t)g;
+    }
+    return -1;
+}
+
+/* Edges of the domain that are sharp or on the rim as seen; is_hidden: those behind it. */
+static void put_outline(FILE *out, const struct brc_convex *c, const struct view *v, bool is_hidden)
+{
+    static const double sharp = 0.87; /* cosine of the turn of the normal, 30 degrees */
+    fprintf(out, "$%s << end_of_data\n", is_hidden ? "hidden" : "outline");
+    for (size_t f = 0; f < c->n_faces; f++) {
+        size_t first = c->first[f], n = c->first[f + 1] - first;
+        for (size_t k = 0; k < n; k++) {
+            int32_t a = c->loop[first + k], b = c->loop[first + (k + 1) % n];
+            int64_t g = face_across(c, a, b);
+            if (g < (int64_t)f)
+                continue;
+            const double *nf = c->plane[f].n, *ng = c->plane[g].n;
+            bool front_f = brc_dot(nf, v->to_eye) > 0, front_g = brc_dot(ng, v->to_eye) > 0;
+            bool drawn = brc_dot(nf, ng) < sharp || front_f != front_g;
+            if (!drawn || (front_f || front_g) == is_hidden)
+                continue;
+            for (int end = 0; end < 2; end++) {
+                const double *x = c->vertex[end ? b : a];
+                fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
+            }
+            fputs("\n\n", out);
+        }
+    }
+    fputs("end_of_data\n", out);
+}
+
+/* A step of 1, 2 or 5 times a power of ten that gives at most `most` steps over the length. */
+static double tic_step(double length, int most)
+{
+    static const double nice[] = {1, 2, 5, 10};
+    double step = pow(10, floor(log10(length / most)));
+    for (int i = 0; i < 4; i++)
+        if (nice[i] * step * most >= length)
+            return nice[i] * step;
+    return 10 * step;
+}
+
+/* Scale of `set view` that fits the specimen into a panel, the size of which is given in heights of
+ * the picture. Gnuplot draws the base with 4/7 of the panel less its margins at scale 1. */
+static double fit_scale(const struct view *v, const double extent[3])
+{
+    static const double base = 0.522 * PANEL_WIDTH;
+    double a = v->tilt * BRC_PI / 180, b = v->turn * BRC_PI / 180;
+    double wide = extent[0] * cos(b) + extent[1] * sin(b);
+    double deep = extent[0] * sin(b) + extent[1] * cos(b);
+    double high = extent[2] * sin(a) + deep * cos(a);
+    double unit = base / fmax(extent[0], extent[1]);
+    return fmin(0.9 * PANEL_HEIGHT / (high * unit), 0.70 * PANEL_WIDTH / (wide * unit));
+}
+
+/* Ranges and view; only the axes that the view shows at length have tics. */
+static void put_axes(FILE *out, const struct brc_convex *domain, const struct view *v)
+{
+    double extent[3];
+    bool side = v->tilt > 45;
+    for (int k = 0; k < 3; k++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (size_t i = 0; i < domain->n_vertices; i++) {
+            low = fmin(low, domain->vertex[i][k]);
+            high = fmax(high, domain->vertex[i][k]);
+        }
+        extent[k] = MM * (high - low);
+        fprintf(out, "set %crange [%.4f:%.4f]\n", "xyz"[k], MM * low, MM * high);
+        if ((k == 2) == side)
+            fprintf(out, "set %ctics %g\nset %clabel '%c [mm]'\n", "xyz"[k], tic_step(extent[k], 4),
+                    "xyz"[k], "xyz"[k]);
+        else
+            fprintf(out, "unset %ctics\nunset %clabel\n", "xyz"[k], "xyz"[k]);
+    }
+    fputs(side ? "set zlabel rotate parallel offset 2,0\n"
+               : "set xlabel offset 0,1\nset ylabel offset -3.7,0\n",
+          out);
+    fprintf(out, "set view %g,%g,%.4g*panel_scale\nset view equal xyz\nset xyplane relative 0\n",
+            v->tilt, v->turn, fit_scale(v, extent));
+}
+
+/* Lines under the picture; cracks.gp says where the panel is. */
+static void put_legend(FILE *out, const struct cracks *c)
+{
+    for (int mode = 0; mode < BRC_N_MODES; mode++) {
+        char drawn[32] = "";
+        if (c->n_drawn[mode] < c->n_broken[mode])
+            snprintf(drawn, sizeof drawn, ", %zu drawn", c->n_drawn[mode]);
+        fprintf(
+            out,
+            "set label %d '%s: %zu facets, %.3g cm\u00b2%s' at screen panel_left, screen %.3f left "
+            "offset 1.5,0 point pt 5 ps 2 lc rgb '#%06x'\n",
+            mode + 1, brc_mode_name((enum brc_mode)mode), c->n_broken[mode], 1e4 * c->area[mode],
+            drawn, 0.08 - 0.028 * mode, mode_colour(mode, N_SHADES - 1));
+    }
+}
+
+static void put_splot(FILE *out, bool used[BRC_N_MODES][N_SHADES])
+{
+    fputs("splot $hidden with lines lc rgb '#b8b8b8' lw 1 dt 2 notitle", out);
+    for (int mode = 0; mode < BRC_N_MODES; mode++)
+        for (int shade = 0; shade < N_SHADES; shade++)
+            if (used[mode][shade])
+                fprintf(out, ", \\\n  $%s_%d with polygons fs solid 1 fc rgb '#%06x' notitle",
+                        brc_mode_name((enum brc_mode)mode), shade, mode_colour(mode, shade));
+    fputs(", \\\n  $outline with lines lc rgb '#404040' lw 1.4 notitle\n", out);
+}
+
+int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_sim *sim,
+                    const struct brc_output_params *output)
+{
+    const struct brc_specimen *s = sim->specimen;
+    struct view v = choose_view(output, (enum brc_test)sim->rig.params.kind);
+    bool used[BRC_N_MODES][N_SHADES];
+    struct cracks c;
+    FILE *out;
+    BRC_TRY(classify(ctx, sim, output, &c));
+    int code = brc_gnuplot_open(ctx, dir, "cracks.plot", &out);
+    if (code == 0) {
+        fprintf(out,
+                "# Broken facets of a run of breccia, one block a mode and shade; lengths in mm.\n"
+                "# Drawn by cracks.gp, which sets the terminal and loads this file.\n");
+        put_cracks(out, &s->facets, &c, &v, used);
+        put_outline(out, &s->domain, &v, false);
+        put_outline(out, &s->domain, &v, true);
+        put_axes(out, &s->domain, &v);
+        put_legend(out, &c);
+        put_splot(out, used);
+        code = brc_gnuplot_close(ctx, dir, "cracks.plot", out);
+    }
+    free(c.mode);
+    return code;
+}
+
+/* ---- scripts ------------------------------------------------------------------------------- */
+
+static const char *run_colour(int i)
+{
+    static const char *const colour[] = {"#1b4f8f", "#d1570b", "#3a7d2c", "#7a3b93"};
+    return colour[i % 4];
+}
+
+static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const char *name)
+{
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s", runs->folder[i], name);
+    brc_gnuplot_quoted(out, path);
+}
+
+/* Stress against strain: along the load, and across it to the left. */
+static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
+{
+    bool brazilian = runs->test == BRC_TEST_BRAZILIAN;
+    fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nplot ",
+            brazilian ? "platen strain" : "axial strain; dashed: lateral strain",
+            brazilian ? "nominal tensile stress 2F/(\u03c0DT)" : "axial stress");
+    for (int i = 0; i < runs->n; i++) {
+        fputs(i ? ", \\\n  " : "", out);
+        put_file(out, runs, i, "curve.csv");
+        fprintf(out,
+                " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines lw 2.4 "
+                "lc rgb '%s' title ",
+                brazilian ? "strain" : "strain_axial", run_colour(i));
+        brc_gnuplot_quoted(out, runs->label[i]);
+        if (brazilian)
+            continue;
+        fputs(", \\\n  ", out);
+        put_file(out, runs, i, "curve.csv");
+        fprintf(out,
+                " using (100*column('strain_lateral [1]')):(1e-6*column('stress [Pa]')) with lines "
+                "lw 1.6 dt (8,5) lc rgb '%s' notitle",
+                run_colour(i));
+    }
+    fputc('\n', out);
+}
+
+/* A mode that never occurs has no entry in the legend. */
+static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
+{
+    static const char *const dash[BRC_N_MODES] = {"1", "(10,4)", "(2,4)"};
+    for (int i = 0; i < runs->n; i++)
+        for (int mode = 0; mode < BRC_N_MODES; mode++) {
+            fputs("stats ", out);
+            put_file(out, runs, i, "broken.csv");
+            fprintf(out, " using (column('%s [1]')) name 'part_%d_%d' nooutput\n",
+                    brc_mode_name((enum brc_mode)mode), i, mode);
+        }
+    fputs("set xlabel 'platen strain [%]'\nset ylabel 'broken area [% of all facets]'\nplot ", out);
+    for (int i = 0; i < runs->n; i++)
+        for (int mode = 0; mode < BRC_N_MODES; mode++) {
+            char label[128];
+            fputs(i || mode ? ", \\\n  " : "", out);
+            put_file(out, runs, i, "broken.csv");
+            fprintf(out,
+                    " using (100*column('strain [1]')):(100*column('%s [1]')) with lines lw 2.2 dt "
+                    "%s lc rgb '%s' title (part_%d_%d_max > 0 ? ",
+                    brc_mode_name((enum brc_mode)mode), dash[mode], run_colour(i), i, mode);
+            snprintf(label, sizeof label, "%s, %s", runs->label[i],
+                     brc_mode_name((enum brc_mode)mode));
+            brc_gnuplot_quoted(out, label);
+            fputs(" : '')", out);
+        }
+    fputc('\n', out);
+}
+
+static int write_curves(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs)
+{
+    FILE *out;
+    BRC_TRY(brc_gnuplot_open(ctx, dir, "curves.gp", &out));
+    brc_gnuplot_head(out, "curves", 1500, 640, 13);
+    fputs("set datafile separator ','\nset grid lc rgb '#dddddd' lt 1\nset border 3\n"
+          "set tics nomirror\nset key outside top center horizontal\n"
+          "set multiplot layout 1,2 title ",
+          out);
+    brc_gnuplot_quoted(out, runs->title);
+    fputs(" font ',15'\n", out);
+    put_stress_panel(out, runs);
+    put_broken_panel(out, runs);
+    fputs("unset multiplot\n", out);
+    return brc_gnuplot_close(ctx, dir, "curves.gp", out);
+}
+
+static int write_pictures(struct brc_context *ctx, const char *dir,
+                          const struct brc_plot_runs *runs, int height)
+{
+    FILE *out;
+    BRC_TRY(brc_gnuplot_open(ctx, dir, "cracks.gp", &out));
+    brc_gnuplot_head(out, "cracks", (int)(PANEL_WIDTH * height * runs->n), height, height / 70);
+    fputs("set pm3d depthorder border lc rgb '#202020' lw 0.4\nset border 0\n"
+          "panel_scale = 1.0 # of the specimen in its panel\nset multiplot title ",
+          out);
+    brc_gnuplot_quoted(out, runs->title);
+    fputs("\n", out);
+    for (int i = 0; i < runs->n; i++) {
+        fprintf(out, "panel_left = %.4f\nset origin %.4f,0.11\nset size %.4f,%.4f\nset label 9 ",
+                (i + 0.24) / runs->n, (double)i / runs->n, 1.0 / runs->n, PANEL_HEIGHT);
+        brc_gnuplot_quoted(out, runs->label[i]);
+        fprintf(out, " at screen %.4f,0.935 center font ',%d'\nload ", (i + 0.5) / runs->n,
+                height / 60);
+        put_file(out, runs, i, "cracks.plot");
+        fputc('\n', out);
+    }
+    fputs("unset multiplot\n", out);
+    return brc_gnuplot_close(ctx, dir, "cracks.gp", out);
+}
+
+int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,
+                  const struct brc_output_params *output)
+{
+    static const char *const picture[] = {"curves", "cracks"};
+    BRC_TRY(write_curves(ctx, dir, runs));
+    BRC_TRY(write_pictures(ctx, dir, runs, output->picture_height));
+    return brc_gnuplot_draw(ctx, dir, picture, 2);
+}

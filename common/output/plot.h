@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plots and pictures: gnuplot scripts with their data next to the results, run where gnuplot is
+ * installed. Without it the scripts stay and a log line says so. */
+#ifndef BRC_PLOT_H
+#define BRC_PLOT_H
+
+#include "common/output/output.h"
+#include "common/engine/sim.h"
+
+enum { BRC_PLOT_MAX_RUNS = 16 };
+
+/* Part of the specimen's inner facet area that is broken, by mode, at each row of the curve. */
+#define BRC_BROKEN_FIELDS(SCALAR, VECTOR)                                                \
+    SCALAR(int64_t, step, BRC_STATE, "1", "step")                                        \
+    SCALAR(double, strain, BRC_STATE, "1", "platen strain")                              \
+    SCALAR(double, tension, BRC_STATE, "1", "area broken in tension / inner facet area") \
+    SCALAR(double, shear, BRC_STATE, "1", "area broken in shear / inner facet area")     \
+    SCALAR(double, torsion, BRC_STATE, "1", "area broken in torsion / inner facet area")
+
+/* Runs side by side: folder of each, relative to the folder of the picture. */
+struct brc_plot_runs {
+    const char *title;
+    enum brc_test test;
+    int n;
+    const char *label[BRC_PLOT_MAX_RUNS], *folder[BRC_PLOT_MAX_RUNS];
+};
+
+/* DIR/broken.csv: see BRC_BROKEN_FIELDS. */
+int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_sim *sim);
+/* DIR/cracks.plot: broken facets of a run as polygons coloured by mode, outline of the specimen. */
+int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_sim *sim,
+                    const struct brc_output_params *output);
+/* DIR/curves.gp and curves.png from each run's curve.csv and broken.csv; DIR/cracks.gp and
+ * cracks.png from each run's cracks.plot. */
+int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,
+                  const struct brc_output_params *output);
+
+#endif

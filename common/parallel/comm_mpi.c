@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/parallel/comm.h"
+
+#include <mpi.h>
+#include <stdlib.h>
+
+/* Only a launcher makes several ranks. Without one nothing needs MPI, and its start would depend on
+ * what one process has no use for: a home folder, room for session files in the temporary folder,
+ * network hardware; many starts at once fail now and then. So that there are several ranks is read
+ * from what launchers tell each process (Open MPI; PMIx: prte, srun; PMI: MPICH, Intel, srun;
+ * MVAPICH). A batch system's own variables (SLURM_*) stand in serial jobs, too. */
+static bool comm_is_launched(void)
+{
+    static const char *const mark[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "PMI_RANK",
+                                       "MV2_COMM_WORLD_SIZE"};
+    for (size_t i = 0; i < sizeof mark / sizeof mark[0]; i++)
+        if (getenv(mark[i]) != NULL)
+            return true;
+    return false;
+}
+
+static bool comm_is_up(void)
+{
+    int is_started = 0, is_ended = 0;
+    MPI_Initialized(&is_started);
+    MPI_Finalized(&is_ended);
+    return is_started && !is_ended;
+}
+
+int brc_comm_start(struct brc_context *ctx)
+{
+    int is_ended = 0;
+    if (!comm_is_up() && !comm_is_launched())
+        return 0;
+    MPI_Finalized(&is_ended);
+    if (is_ended)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI was ended; it cannot start again in this process");
+    if (!comm_is_up() && MPI_Init(NULL, NULL) != MPI_SUCCESS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI did not start");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    return 0;
+}
+
+void brc_comm_end(void)
+{
+    if (comm_is_up())
+        MPI_Finalize();
+}
+
+int brc_comm_rank(void)
+{
+    int rank = 0;
+    if (comm_is_up())
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return rank;
+}
+
+int brc_comm_size(void)
+{
+    int size = 1;
+    if (comm_is_up())
+        MPI_Comm_size(MPI_COMM_WORLD, &size);
+    return size;
+}
+
+int brc_comm_sum(struct brc_context *ctx, double *values, int n)
+{
+    int size = brc_comm_size();
+    if (size == 1 || n == 0)
+        return 0;
+    double *part = brc_alloc(ctx, (size_t)size * (size_t)n, sizeof *part);
+    if (part == NULL)
+        return BRC_ERR_MEMORY;
+    int code = MPI_Allgather(values, n, MPI_DOUBLE, part, n, MPI_DOUBLE, MPI_COMM_WORLD);
+    for (int i = 0; i < n && code == MPI_SUCCESS; i++) {
+        values[i] = part[i];
+        for (int rank = 1; rank < size; rank++)
+            values[i] += part[(size_t)rank * (size_t)n + (size_t)i];
+    }
+    free(part);
+    if (code != MPI_SUCCESS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI could not exchange %d sums (code %d)", n, code);
+    return 0;
+}

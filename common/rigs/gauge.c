@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/rigs/gauge.h"
+
+#include "common/engine/sim.h"
+
+#include <math.h>
+
+/* Grains that a gauge strain needs, and their spread over the width of the gauge, or of the
+ * specimen across the load; places all over a width have 0.29. */
+enum { GAUGE_GRAINS = 4 };
+static const double GAUGE_SPREAD = 0.1;
+
+static bool is_in_gauge(const struct brc_sim *sim, size_t grain)
+{
+    const struct brc_rig *rig = &sim->rig;
+    double middle = sim->bodies.x0[rig->platen[0].body][rig->axis] +
+                    0.5 * rig->length * rig->platen[0].n[rig->axis];
+    double reach = 0.5 * rig->length * rig->params.gauge;
+    return fabs(sim->bodies.x0[grain][rig->axis] - middle) <= reach;
+}
+
+/* Grains in the gauge and the standard deviation of their places along k, which a slope needs: a
+ * single layer would give the slope of its round-off. */
+static void judge(struct brc_sim *sim, int k)
+{
+    struct brc_rig *rig = &sim->rig;
+    double low[3], high[3], mean = 0, square = 0;
+    size_t n = 0;
+    brc_specimen_extent(sim->specimen, low, high);
+    double width = k == rig->axis ? rig->length * rig->params.gauge : high[k] - low[k];
+    for (size_t i = 0; i < sim->bodies.n_grains; i++) {
+        if (!is_in_gauge(sim, i))
+            continue;
+        double x = sim->bodies.x0[i][k] - 0.5 * (low[k] + high[k]), step = x - mean;
+        mean += step / (double)++n;
+        square += step * (x - mean);
+    }
+    rig->has_gauge[k] = n >= GAUGE_GRAINS && sqrt(square / (double)n) >= GAUGE_SPREAD * width;
+}
+
+double brc_gauge_strain(const struct brc_sim *sim, int k)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    double n = 0, sx = 0, su = 0, sxx = 0, sxu = 0;
+    if (sim->rig.n_platens == 0)
+        return 0;
+    if (!sim->rig.has_gauge[k])
+        return NAN;
+    for (size_t i = 0; i < b->n_grains; i++) {
+        if (!is_in_gauge(sim, i))
+            continue;
+        double x = b->x0[i][k], u = b->x[i][k] - x;
+        n += 1;
+        sx += x;
+        su += u;
+        sxx += x * x;
+        sxu += x * u;
+    }
+    return -(n * sxu - sx * su) / (n * sxx - sx * sx);
+}
+
+void brc_gauge_judge(struct brc_sim *sim)
+{
+    for (int k = 0; k < 3; k++)
+        judge(sim, k);
+}

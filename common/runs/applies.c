@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/applies.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { TEXT_SIZE = 320 };
+
+/* One part "section.key=a|b" of a clause. */
+struct part {
+    char section[BRC_CASE_KEY_SIZE], key[BRC_CASE_KEY_SIZE];
+    const char *choices; /* behind the = */
+    size_t length;       /* of the choices */
+};
+
+/* Number of a section, -1 when there is none. */
+static int find_section(const char *name, struct brc_param_list *list)
+{
+    const char *section;
+    for (int i = 0; brc_job_section(i, &section, list); i++)
+        if (strcmp(section, name) == 0)
+            return i;
+    return -1;
+}
+
+/* Takes a part from the text; returns what follows, NULL when it cannot be read. */
+static const char *take_part(const char *text, const char *section, struct part *part)
+{
+    size_t n = strcspn(text, "=,"), dot = strcspn(text, ".=,");
+    if (text[n] != '=')
+        return NULL;
+    bool is_far = dot < n;
+    snprintf(part->section, sizeof part->section, "%.*s", is_far ? (int)dot : (int)strlen(section),
+             is_far ? text : section);
+    const char *key = is_far ? text + dot + 1 : text;
+    snprintf(part->key, sizeof part->key, "%.*s", (int)(text + n - key), key);
+    part->choices = text + n + 1;
+    part->length = strcspn(part->choices, " ,");
+    return part->choices + part->length;
+}
+
+static bool is_one_of(const char *text, const struct part *part)
+{
+    size_t n = strlen(text);
+    for (const char *c = part->choices; c < part->choices + part->length;) {
+        size_t length = strcspn(c, "| ,");
+        if (length == n && strncmp(c, text, n) == 0)
+            return true;
+        c += length + (c[length] == '|');
+    }
+    return false;
+}
+
+/* What a key is now: a choice, a number, or 0 for any zero. */
+static const char *value_text(const struct brc_param *p, const void *values, char text[TEXT_SIZE])
+{
+    const void *at = (const char *)values + p->offset;
+    bool is_zero = (p->kind == BRC_REAL && *(const double *)at == 0) ||
+                   (p->kind == BRC_INT && *(const int *)at == 0);
+    return is_zero ? "0" : brc_params_text(p, values, text, TEXT_SIZE);
+}
+
+static int holds(struct brc_context *ctx, const struct brc_job *job, const struct part *part,
+                 bool *does)
+{
+    char text[TEXT_SIZE];
+    struct brc_param_list list;
+    int i = find_section(part->section, &list);
+    const struct brc_param *p = i < 0 ? NULL : brc_params_find(list, part->key);
+    if (!p)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "'%s.%s' is not a key that another one can hang on",
+                 part->section, part->key);
+    *does = is_one_of(value_text(p, brc_job_values(job, i), text), part);
+    return 0;
+}
+
+int brc_applies(struct brc_context *ctx, const struct brc_job *job, const char *section,
+                const struct brc_param *p, const char **clause)
+{
+    *clause = NULL;
+    for (const char *at = p->applies; at && *at;) {
+        const char *start = at;
+        bool is_true = false, is_more = true;
+        while (is_more) {
+            struct part part;
+            bool does;
+            at = take_part(at, section, &part);
+            if (!at)
+                BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s.%s: cannot read '%s'", section, p->key,
+                         p->applies);
+            BRC_TRY(holds(ctx, job, &part, &does));
+            is_true = is_true || does;
+            is_more = strncmp(at, " or ", 4) == 0;
+            at += is_more ? 4 : strspn(at, ", ");
+        }
+        if (!is_true) {
+            *clause = start;
+            return 0;
+        }
+    }
+    return 0;
+}
+
+/* Whether --set gives a key that the clause hangs on. */
+static bool is_overridden(const struct brc_job *job, const char *section, const char *clause)
+{
+    struct part part;
+    struct brc_param_list list;
+    for (const char *at = clause;; at += 4) {
+        at = take_part(at, section, &part);
+        find_section(part.section, &list);
+        const struct brc_case_entry *e =
+            brc_case_find_entry(&job->file, part.section, part.key, list);
+        if (e && e->is_override)
+            return true;
+        if (strncmp(at, " or ", 4) != 0)
+            return false;
+    }
+}
+
+/* Does the expression hang on the key of the part? */
+static bool mentions(const char *applies, const char *section, const struct part *wanted)
+{
+    struct part part;
+    for (const char *at = applies; at && *at;) {
+        at = take_part(at, section, &part);
+        if (at && strcmp(part.section, wanted->section) == 0 && strcmp(part.key, wanted->key) == 0)
+            return true;
+        if (at)
+            at += strncmp(at, " or ", 4) == 0 ? 4 : strspn(at, ", ");
+    }
+    return false;
+}
+
+/* Keys of the section that apply by the same deciding key: "a, b". */
+static int list_others(struct brc_context *ctx, const struct brc_job *job, const char *section,
+                       struct brc_param_list list, const struct part *decider, char *text,
+                       size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < list.n; i++) {
+        const char *clause;
+        if (!mentions(list.params[i].applies, section, decider))
+            continue;
+        BRC_TRY(brc_applies(ctx, job, section, &list.params[i], &clause));
+        if (!clause && used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
+                                     list.params[i].key);
+    }
+    return 0;
+}
+
+static int refuse(struct brc_context *ctx, const struct brc_job *job, const char *section,
+                  struct brc_param_list list, const struct brc_case_entry *e, const char *clause)
+{
+    struct part part;
+    struct brc_param_list far;
+    char where[BRC_CASE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE];
+    take_part(clause, section, &part);
+    int i = find_section(part.section, &far);
+    const struct brc_param *p = brc_params_find(far, part.key);
+    const struct brc_case_entry *given =
+        brc_case_find_entry(&job->file, part.section, part.key, far);
+    BRC_TRY(list_others(ctx, job, section, list, &part, others, sizeof others));
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "%s: %s.%s: applies only with %.*s, but %s.%s is %s%s; leave the key out, or change "
+             "%s.%s%s%s",
+             brc_case_where(&job->file, e->line, e->is_override, where), section,
+             brc_case_key(e, list), (int)strcspn(clause, ","), clause, part.section, part.key,
+             value_text(p, brc_job_values(job, i), text), given ? "" : " (its default)",
+             part.section, part.key, *others ? "; what applies now is " : "", others);
+}
+
+static int check_key(struct brc_context *ctx, const struct brc_job *job, const char *section,
+                     struct brc_param_list list, const struct brc_param *p, void *values)
+{
+    const char *clause;
+    const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, p->key, list);
+    if (!e)
+        return 0;
+    BRC_TRY(brc_applies(ctx, job, section, p, &clause));
+    if (!clause)
+        return 0;
+    if (e->is_override || !is_overridden(job, section, clause))
+        return refuse(ctx, job, section, list, e, clause);
+    return brc_params_set(ctx, list, values, section, p->key, p->default_text, "default");
+}
+
+int brc_applies_check(struct brc_context *ctx, const struct brc_job *job, int section, void *values)
+{
+    const char *name;
+    struct brc_param_list list;
+    brc_job_section(section, &name, &list);
+    for (int k = 0; k < list.n; k++)
+        if (list.params[k].applies)
+            BRC_TRY(check_key(ctx, job, name, list, &list.params[k], values));
+    return 0;
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/compare.h"
+
+#include "common/runs/child.h"
+#include "common/output/plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = 4096, MAX_RUNS = BRC_PROGRESS_MAX_RUNS };
+
+struct compare;
+
+/* One model's run. */
+struct model_run {
+    const struct compare *compare;
+    const struct brc_model *model;
+    char dir[PATH_SIZE];
+};
+
+struct compare {
+    struct brc_context *ctx;
+    const struct brc_compare_order *order;
+    struct brc_progress progress;
+    int n, n_started;
+    struct model_run run[MAX_RUNS];
+    struct brc_child child[MAX_RUNS];
+};
+
+/* ---- the models ---------------------------------------------------------------------------- */
+
+static int add_model(struct compare *c, const struct brc_model *model)
+{
+    struct model_run *run = &c->run[c->n];
+    run->compare = c;
+    run->model = model;
+    snprintf(c->child[c->n].name, sizeof c->child[c->n].name, "%s", model->name);
+    if (snprintf(run->dir, PATH_SIZE, "%s/%s", c->order->dir, model->name) >= PATH_SIZE)
+        BRC_FAIL(c->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", c->order->dir);
+    c->n++;
+    return 0;
+}
+
+static int choose_models(struct compare *c)
+{
+    const struct brc_model *model[MAX_RUNS];
+    int n;
+    BRC_TRY(brc_job_models(c->ctx, c->order->job, model, MAX_RUNS, &n));
+    brc_children_init(c->child, n);
+    for (int i = 0; i < n; i++)
+        BRC_TRY(add_model(c, model[i]));
+    return 0;
+}
+
+/* Builds each simulation once and drops it, so that what one model refuses ends all before any
+ * folder is touched. */
+static int try_models(const struct compare *c)
+{
+    const struct brc_job *job = c->order->job;
+    for (int i = 0; i < c->n; i++) {
+        struct brc_sim sim;
+        const struct brc_model *model = c->run[i].model;
+        BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_job_params(job, model), c->order->specimen,
+                               &job->test, &job->run));
+        brc_sim_free(&sim);
+    }
+    return 0;
+}
+
+/* ---- children ------------------------------------------------------------------------------ */
+
+static int run_model(struct brc_context *ctx, const void *user, struct brc_progress *progress,
+                     struct brc_summary *out)
+{
+    const struct model_run *run = user;
+    const struct brc_compare_order *o = run->compare->order;
+    const struct brc_run_order order = {
+        .job = o->job,
+        .model = run->model,
+        .specimen = o->specimen,
+        .dir = run->dir,
+        .is_resumed = o->is_resumed && brc_run_has_begun(run->dir),
+        .is_forced = o->is_forced,
+        .progress = progress,
+    };
+    return brc_run(ctx, &order, out);
+}
+
+static int run_all(struct compare *c)
+{
+    int at_once = brc_children_at_once(), n_running;
+    while ((n_running = brc_children_running(c->child, c->n)) > 0 || c->n_started < c->n) {
+        bool may_start = c->n_started < c->n && !brc_run_is_stopped();
+        if (may_start && n_running < at_once) {
+            int i = c->n_started++;
+            const struct brc_child_work work = {run_model, &c->run[i]};
+            BRC_TRY(brc_children_start(c->ctx, c->child, c->n, i, &work));
+        } else if (n_running > 0) {
+            BRC_TRY(brc_children_listen(c->ctx, c->child, c->n, &c->progress));
+        } else {
+            break;
+        }
+    }
+    return 0;
+}
+
+static bool is_interrupt(const struct brc_child *child)
+{
+    return child->outcome.code == BRC_ERR_INTERRUPTED || child->outcome.code == BRC_ERR_NOT_BEGUN;
+}
+
+/* Tells of which models there is a state to go on from: those that have begun now or before. */
+static int fail_interrupted(struct compare *c)
+{
+    char begun[MAX_RUNS * sizeof c->child[0].name] = "";
+    size_t used = 0;
+    for (int i = 0; i < c->n; i++) {
+        bool was_begun = c->order->is_resumed && brc_run_has_begun(c->run[i].dir);
+        bool has_ended = i < c->n_started && c->child[i].outcome.code != BRC_ERR_NOT_BEGUN;
+        if (was_begun || has_ended)
+            used += (size_t)snprintf(begun + used, sizeof begun - used, "%s%s", used ? ", " : "",
+                                     c->child[i].name);
+    }
+    if (used == 0)
+        BRC_FAIL(c->ctx, BRC_ERR_NOT_BEGUN,
+                 "interrupted before the first step; nothing was saved in %s", c->order->dir);
+    BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; saved in %s: %s", c->order->dir, begun);
+}
+
+/* The first failure counts; an interruption counts less than a failure. Runs whose energy does not
+ * add up have results to show. */
+static int judge(struct compare *c)
+{
+    const struct brc_child *worst = NULL;
+    for (int i = 0; i < c->n; i++) {
+        const struct brc_child *child = &c->child[i];
+        if (child->outcome.code == 0 || child->outcome.code == BRC_ERR_ENERGY)
+            continue;
+        if (!worst || (is_interrupt(worst) && !is_interrupt(child)))
+            worst = child;
+    }
+    if (worst && !is_interrupt(worst))
+        BRC_FAIL(c->ctx, worst->outcome.code, "%s: %s", worst->name, worst->outcome.message);
+    return worst || c->n_started < c->n ? fail_interrupted(c) : 0;
+}
+
+static int judge_energy(const struct compare *c)
+{
+    for (int i = 0; i < c->n; i++)
+        if (c->child[i].outcome.code == BRC_ERR_ENERGY)
+            BRC_FAIL(c->ctx, BRC_ERR_ENERGY, "%s", c->child[i].outcome.message);
+    return 0;
+}
+
+/* ---- results ------------------------------------------------------------------------------- */
+
+static int write_table(struct compare *c)
+{
+    const struct brc_summary *summary[MAX_RUNS];
+    char path[PATH_SIZE], *text = NULL;
+    size_t size = 0;
+    for (int i = 0; i < c->n; i++)
+        summary[i] = &c->child[i].outcome.summary;
+    if (snprintf(path, sizeof path, "%s/compare.txt", c->order->dir) >= PATH_SIZE)
+        BRC_FAIL(c->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", c->order->dir);
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        BRC_FAIL(c->ctx, BRC_ERR_MEMORY, "out of memory for the table");
+    brc_compare_table(out, summary, c->n);
+    fclose(out);
+    int code = brc_output_text(c->ctx, path, text);
+    fputs(text, stdout);
+    fflush(stdout);
+    free(text);
+    return code;
+}
+
+static int draw(struct compare *c)
+{
+    const struct brc_job *job = c->order->job;
+    struct brc_plot_runs runs = {
+        .title = job->file.head.title, .test = (enum brc_test)job->test.kind, .n = c->n};
+    for (int i = 0; i < c->n; i++)
+        runs.label[i] = runs.folder[i] = c->run[i].model->name;
+    return job->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &job->output) : 0;
+}
+
+/* Tables and pictures of the folder itself (gnuplot.log only grows); a comparison that goes on
+ * replaces its own. */
+static int check_folders(const struct compare *c)
+{
+    static const char *const names[] = {"compare.txt", "curves.gp", "curves.png", "cracks.gp",
+                                        "cracks.png"};
+    const struct brc_compare_order *o = c->order;
+    bool has_begun = false;
+    for (int i = 0; i < c->n; i++) {
+        bool is_resumed = o->is_resumed && brc_run_has_begun(c->run[i].dir);
+        has_begun |= is_resumed;
+        BRC_TRY(brc_run_check_folder(c->ctx, c->run[i].dir, o->job, is_resumed, o->is_forced));
+    }
+    return brc_run_check_own(c->ctx, o->dir, o->job, names, sizeof names / sizeof names[0],
+                             has_begun || o->is_forced);
+}
+
+int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
+{
+    struct compare *c = brc_alloc(ctx, 1, sizeof *c);
+    const char *label[MAX_RUNS];
+    if (!c)
+        return BRC_ERR_MEMORY;
+    c->ctx = ctx;
+    c->order = order;
+    int code = choose_models(c);
+    for (int i = 0; i < c->n; i++)
+        label[i] = c->run[i].model->name;
+    if (code == 0)
+        code = check_folders(c);
+    if (code == 0)
+        code = try_models(c);
+    if (code == 0)
+        code = brc_run_make_folder(ctx, order->dir);
+    if (code == 0) {
+        brc_progress_begin(&c->progress, stderr, label, c->n, order->is_quiet);
+        code = run_all(c);
+        brc_progress_end(&c->progress);
+    }
+    if (code != 0)
+        brc_children_stop(c->child, c->n);
+    if (code == 0)
+        code = judge(c);
+    if (code == 0)
+        code = write_table(c);
+    if (code == 0)
+        code = draw(c);
+    if (code == 0)
+        code = judge_energy(c);
+    free(c);
+    return code;
+}

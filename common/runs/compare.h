@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The models of a case on one specimen, each in a process of its own, side by side. */
+#ifndef BRC_COMPARE_H
+#define BRC_COMPARE_H
+
+#include "common/runs/run.h"
+
+struct brc_compare_order {
+    const struct brc_job *job;
+    const struct brc_specimen *specimen;
+    const char *dir;            /* the results of a model go to dir/<model> */
+    bool is_resumed, is_forced; /* resumed: models with a state go on, the others start */
+    bool is_quiet;
+};
+
+/* Runs all models of the case, as many at a time as there are processors; prints the table and
+ * writes it to dir/compare.txt, and draws both models' curves and cracks. Start no MPI before: the
+ * models run in forked processes. */
+int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order);
+
+/* A unit to show a value in. */
+struct brc_shown {
+    double factor;
+    const char *unit;
+};
+/* Pascals as GPa or MPa, strains in per cent, by the name and the largest value of the row. */
+struct brc_shown brc_compare_unit(const char *name, const char *unit, double largest);
+/* The table: one row a value, one column a summary. */
+void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n);
+
+#endif

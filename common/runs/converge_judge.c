@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/converge.h"
+
+#include <math.h>
+#include <string.h>
+
+const double brc_converge_within[2] = {0.01, 0.05};
+
+/* It reached the end of the test and measured the observable. */
+static bool is_good(const struct brc_converge_study *study, const struct brc_converge_run *run)
+{
+    return run->is_done && strncmp(run->ended_by, "test.", 5) == 0 &&
+           isfinite(run->result[study->observable]);
+}
+
+/* Values of the observable over the specimens; NAN where a run has not reached the end. */
+static void take_values(const struct brc_converge_study *study,
+                        const struct brc_converge_setting *s, double *value)
+{
+    for (int i = 0; i < study->order->seeds; i++)
+        value[i] = is_good(study, &s->run[i]) ? s->run[i].result[study->observable] : NAN;
+}
+
+static struct brc_converge_error difference(const struct brc_converge_study *study,
+                                            const struct brc_converge_setting *a,
+                                            const struct brc_converge_setting *b)
+{
+    double x[BRC_CONVERGE_MAX_SEEDS], y[BRC_CONVERGE_MAX_SEEDS];
+    take_values(study, a, x);
+    take_values(study, b, y);
+    return brc_converge_error(x, y, study->order->seeds);
+}
+
+/* A setting that lost runs has no error: the mean of those that are left would be another one. */
+static void judge_row(const struct brc_converge_study *study, const struct brc_converge_model *m,
+                      const struct brc_converge_setting *s, struct brc_converge_row *row)
+{
+    double value[BRC_CONVERGE_MAX_SEEDS], steps[BRC_CONVERGE_MAX_SEEDS],
+        cpu[BRC_CONVERGE_MAX_SEEDS];
+    const struct brc_converge_setting *the_case = &m->setting[BRC_CONVERGE_AT_CASE];
+    bool is_ladder = s->role <= BRC_CONVERGE_LADDER;
+    int n = study->order->seeds;
+    *row = (struct brc_converge_row){.setting = s};
+    row->is_case = s != the_case && s->run[0].key == the_case->run[0].key;
+    row->error =
+        difference(study, s, is_ladder ? &m->setting[BRC_CONVERGE_AT_REFERENCE] : the_case);
+    take_values(study, s, value);
+    for (int i = 0; i < n; i++) {
+        steps[i] = (double)s->run[i].steps;
+        cpu[i] = s->run[i].cpu_s;
+        row->n_good += is_good(study, &s->run[i]);
+    }
+    row->value = brc_converge_mean(value, n);
+    row->steps = brc_converge_median(steps, n);
+    row->cpu_s = brc_converge_median(cpu, n);
+    if (row->n_good < n)
+        row->error = (struct brc_converge_error){.mean = NAN, .deviation = NAN, .single = NAN};
+}
+
+/* Rungs of all ladders; the name of a ladder stands first in its list. */
+static void collect_rungs(struct brc_converge_report *r)
+{
+    int ladder = -1;
+    const char *name = "";
+    for (int i = 0; i < r->n; i++) {
+        const struct brc_converge_setting *s = r->row[i].setting;
+        if (s->role != BRC_CONVERGE_LADDER)
+            continue;
+        if (strcmp(name, s->axis) != 0) {
+            name = s->axis;
+            ladder = i;
+        }
+        r->rung_row[r->n_rungs] = i;
+        r->rung[r->n_rungs++] = (struct brc_converge_rung){.ladder = ladder,
+                                                           .fineness = s->fineness,
+                                                           .error = r->row[i].error.mean,
+                                                           .cost = r->row[i].cpu_s};
+    }
+}
+
+void brc_converge_judge(const struct brc_converge_study *study, int model,
+                        struct brc_converge_report *out)
+{
+    const struct brc_converge_model *m = &study->model[model];
+    const struct brc_converge_setting *s = m->setting;
+    double value[BRC_CONVERGE_MAX_SEEDS];
+    *out = (struct brc_converge_report){.model = m, .n = m->n};
+    for (int i = 0; i < m->n; i++)
+        judge_row(study, m, &s[i], &out->row[i]);
+    out->step = difference(study, &s[BRC_CONVERGE_AT_STEP], &s[BRC_CONVERGE_AT_REFERENCE]);
+    out->loading = difference(study, &s[BRC_CONVERGE_AT_LOADING], &s[BRC_CONVERGE_AT_STEP]);
+    out->reference = out->row[BRC_CONVERGE_AT_REFERENCE].value;
+    out->uncertainty = brc_converge_uncertainty(&out->loading, &out->step);
+    take_values(study, &s[BRC_CONVERGE_AT_REFERENCE], value);
+    out->scatter = brc_converge_scatter(value, study->order->seeds);
+    collect_rungs(out);
+    for (int k = 0; k < 2; k++) {
+        int best = brc_converge_cheapest(out->rung, out->n_rungs, brc_converge_within[k]);
+        out->cheapest[k] = best < 0 ? -1 : out->rung_row[best];
+    }
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The record of a ladder's finished runs, converge_runs.csv: a line is added as each run ends, so
+ * that a ladder that was stopped goes on with what is missing. */
+#ifndef BRC_CONVERGE_RECORD_H
+#define BRC_CONVERGE_RECORD_H
+
+#include "common/runs/converge.h"
+
+struct brc_converge_record {
+    FILE *file;
+    char path[4096];
+    int n_results;
+    size_t n, cap;
+    struct brc_converge_run *run; /* finished ones */
+};
+
+/* Opens the record in a folder that is there; it is locked until it is closed. Existing lines are
+ * an error unless they are to be kept or replaced; kept lines must be of the same results. Closed
+ * also after a failure. */
+int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record *r,
+                             const struct brc_converge_study *study);
+/* The finished run of this key, NULL when there is none. */
+const struct brc_converge_run *brc_converge_record_find(const struct brc_converge_record *r,
+                                                        uint64_t key);
+int brc_converge_record_add(struct brc_context *ctx, struct brc_converge_record *r,
+                            const char *model, int seed, const struct brc_converge_setting *s,
+                            const struct brc_converge_run *run);
+void brc_converge_record_close(struct brc_converge_record *r);
+
+#endif

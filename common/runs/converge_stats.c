@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/converge_stats.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MAX_VALUES = 1024 };
+
+double brc_converge_mean(const double *value, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += value[i];
+    return n > 0 ? sum / n : NAN;
+}
+
+/* Standard deviation of a sample. */
+static double deviation(const double *value, int n)
+{
+    double mean = brc_converge_mean(value, n), sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += (value[i] - mean) * (value[i] - mean);
+    return n > 1 ? sqrt(sum / (n - 1)) : NAN;
+}
+
+double brc_converge_scatter(const double *value, int n)
+{
+    return deviation(value, n) / fabs(brc_converge_mean(value, n));
+}
+
+static int compare(const void *p, const void *q)
+{
+    const double *a = p, *b = q;
+    return (*a > *b) - (*a < *b);
+}
+
+double brc_converge_median(const double *value, int n)
+{
+    double sorted[MAX_VALUES];
+    if (n < 1 || n > MAX_VALUES)
+        return NAN;
+    for (int i = 0; i < n; i++)
+        sorted[i] = value[i];
+    qsort(sorted, (size_t)n, sizeof sorted[0], compare);
+    return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+}
+
+struct brc_converge_error brc_converge_error(const double *value, const double *reference, int n)
+{
+    double difference[MAX_VALUES], base = 0, squares = 0;
+    struct brc_converge_error e = {.mean = NAN, .deviation = NAN, .single = NAN};
+    for (int i = 0; i < n && e.n < MAX_VALUES; i++) {
+        if (!isfinite(value[i]) || !isfinite(reference[i]))
+            continue;
+        difference[e.n++] = value[i] - reference[i];
+        base += reference[i];
+        squares += (value[i] - reference[i]) * (value[i] - reference[i]);
+    }
+    base = fabs(base) / e.n;
+    if (e.n == 0 || base == 0)
+        return e;
+    e.mean = brc_converge_mean(difference, e.n) / base;
+    e.deviation = deviation(difference, e.n) / sqrt(e.n) / base;
+    e.single = sqrt(squares / e.n) / base;
+    return e;
+}
+
+double brc_converge_uncertainty(const struct brc_converge_error *loading,
+                                const struct brc_converge_error *step)
+{
+    double chance = fmax(loading->deviation, step->deviation);
+    double chance2 = isfinite(chance) ? chance * chance / 2 : 0;
+    return sqrt(loading->mean * loading->mean + step->mean * step->mean + chance2);
+}
+
+bool brc_converge_is_within(const struct brc_converge_rung *rung, int n, int i, double error)
+{
+    for (int k = 0; k < n; k++) {
+        bool counts = rung[k].ladder == rung[i].ladder && rung[k].fineness >= rung[i].fineness;
+        if (counts && !(fabs(rung[k].error) <= error))
+            return false;
+    }
+    return true;
+}
+
+int brc_converge_cheapest(const struct brc_converge_rung *rung, int n, double error)
+{
+    int best = -1;
+    for (int i = 0; i < n; i++)
+        if (brc_converge_is_within(rung, n, i, error) &&
+            (best < 0 || rung[i].cost < rung[best].cost))
+            best = i;
+    return best;
+}
+
+struct brc_converge_cost brc_converge_cost(const struct brc_converge_rung *rung, int n, int ladder,
+                                           double error)
+{
+    const struct brc_converge_rung *in = NULL, *out = NULL;
+    for (int i = 0; i < n; i++) {
+        if (rung[i].ladder != ladder)
+            continue;
+        if (brc_converge_is_within(rung, n, i, error)) {
+            if (!in || rung[i].fineness < in->fineness)
+                in = &rung[i];
+        } else if (!out || rung[i].fineness > out->fineness) {
+            out = &rung[i];
+        }
+    }
+    if (!in)
+        return (struct brc_converge_cost){.cost = NAN};
+    if (!out)
+        return (struct brc_converge_cost){.cost = in->cost, .is_bound = true};
+    if (!isfinite(out->error) || in->error == 0)
+        return (struct brc_converge_cost){.cost = in->cost};
+    double part = log(error / fabs(in->error)) / log(fabs(out->error / in->error));
+    return (struct brc_converge_cost){.cost = in->cost * pow(out->cost / in->cost, part)};
+}

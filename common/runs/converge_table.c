@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/converge.h"
+
+#include "common/runs/compare.h"
+#include "common/output/output.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 104, PATH_SIZE = 4096, TEXT_SIZE = 40 };
+
+/* Errors at which the steps of both kinds of loading are compared. */
+static const double levels[] = {0.01, 0.02, 0.05, 0.1};
+
+static void put_rule(FILE *out)
+{
+    for (int i = 0; i < WIDTH; i++)
+        fputc('-', out);
+    fputc('\n', out);
+}
+
+/* Four digits, a dash for what is not there. */
+static const char *digits(double value, char text[TEXT_SIZE])
+{
+    if (!isfinite(value))
+        snprintf(text, TEXT_SIZE, "-");
+    else if (fabs(value) >= 1000 || value == 0)
+        snprintf(text, TEXT_SIZE, "%.0f", value);
+    else
+        snprintf(text, TEXT_SIZE, "%.*f", 3 - (int)fmax(floor(log10(fabs(value))), -3), value);
+    return text;
+}
+
+static const char *percent(double part, bool is_signed, char text[TEXT_SIZE])
+{
+    if (!isfinite(part))
+        snprintf(text, TEXT_SIZE, "-");
+    else
+        snprintf(text, TEXT_SIZE, is_signed ? "%+.2f" : "%.2f", 100 * part);
+    return text;
+}
+
+/* ---- one model ----------------------------------------------------------------------------- */
+
+bool brc_converge_is_shown(const struct brc_converge_report *r, int i, double error)
+{
+    const struct brc_converge_error *e = &r->row[i].error;
+    return fabs(e->mean) + hypot(e->deviation, r->uncertainty) <= error;
+}
+
+static void put_row(FILE *out, const struct brc_converge_report *r, int i, struct brc_shown shown,
+                    int n_seeds)
+{
+    const struct brc_converge_row *row = &r->row[i];
+    char text[TEXT_SIZE];
+    fprintf(out, "%-10s %-24s", row->setting->axis, row->setting->label);
+    fprintf(out, "%10s", digits(shown.factor * row->value, text));
+    fprintf(out, "%9s", percent(row->error.mean, true, text));
+    fprintf(out, "%8s", percent(row->error.deviation, false, text));
+    fprintf(out, "%8s", percent(row->error.single, false, text));
+    fprintf(out, "%9.0f", row->steps);
+    fprintf(out, "%9s  ", digits(row->cpu_s, text));
+    for (int k = 0; k < 2; k++)
+        if (r->cheapest[k] == i)
+            fprintf(out, "<= %g %%%s ", 100 * brc_converge_within[k],
+                    brc_converge_is_shown(r, i, brc_converge_within[k]) ? "" : "?");
+    if (row->is_case)
+        fputs("as written", out);
+    if (row->n_good < n_seeds)
+        fprintf(out, "%d of %d ended", row->n_good, n_seeds);
+    fputc('\n', out);
+}
+
+static void put_rows(FILE *out, const struct brc_converge_study *study,
+                     const struct brc_converge_report *r, enum brc_converge_role role,
+                     const char *what)
+{
+    const struct brc_result *seen = &study->results[study->observable];
+    struct brc_shown shown = brc_compare_unit(seen->name, seen->unit, fabs(r->reference));
+    bool is_first = true;
+    for (int i = 0; i < r->n; i++) {
+        bool is_hidden = i == BRC_CONVERGE_AT_STEP || i == BRC_CONVERGE_AT_LOADING;
+        if (r->row[i].setting->role != role || is_hidden)
+            continue;
+        if (is_first && *what)
+            fprintf(out, "%s\n", what);
+        is_first = false;
+        put_row(out, r, i, shown, study->order->seeds);
+    }
+}
+
+static void put_head(FILE *out, const struct brc_converge_study *study,
+                     const struct brc_converge_report *r)
+{
+    const struct brc_result *seen = &study->results[study->observable];
+    struct brc_shown shown = brc_compare_unit(seen->name, seen->unit, fabs(r->reference));
+    char value[TEXT_SIZE], all[TEXT_SIZE], loading[TEXT_SIZE], step[TEXT_SIZE], scatter[TEXT_SIZE];
+    char column[TEXT_SIZE];
+    fprintf(out, "%s: reference %s %s %s, uncertain by %s %%", r->model->model->name, seen->name,
+            digits(shown.factor * r->reference, value), shown.unit,
+            percent(r->uncertainty, false, all));
+    fprintf(out, " (loading %s %%, step %s %%, and chance)\n",
+            percent(r->loading.mean, true, loading), percent(r->step.mean, true, step));
+    fprintf(out, "scatter of the specimens %s %%", percent(r->scatter, false, scatter));
+    if (isfinite(r->scatter))
+        fprintf(out, ": a mean is good to 1 %% over %.0f of them, to 5 %% over %.0f",
+                fmax(ceil(pow(r->scatter / 0.01, 2)), 1), fmax(ceil(pow(r->scatter / 0.05, 2)), 1));
+    fputc('\n', out);
+    put_rule(out);
+    snprintf(column, sizeof column, "[%s]", *shown.unit ? shown.unit : "1");
+    fprintf(out, "%-10s %-24s%10s%9s%8s%8s%9s%9s  %s\n", "axis", "setting", column, "error %",
+            "+- %", "one %", "steps", "CPU s", "cheapest");
+    put_rule(out);
+}
+
+/* ---- adaptive against fixed loading -------------------------------------------------------- */
+
+/* Rungs of one axis with their steps as cost. */
+static int take_steps(const struct brc_converge_report *r, const char *axis,
+                      struct brc_converge_rung *rung)
+{
+    int n = 0;
+    for (int i = 0; i < r->n_rungs; i++) {
+        const struct brc_converge_row *row = &r->row[r->rung_row[i]];
+        if (strcmp(row->setting->axis, axis) != 0)
+            continue;
+        rung[n] = r->rung[i];
+        rung[n].ladder = 0;
+        rung[n++].cost = row->steps;
+    }
+    return n;
+}
+
+static void put_cost(FILE *out, struct brc_converge_cost cost)
+{
+    if (isfinite(cost.cost))
+        fprintf(out, "%s%.0f", cost.is_bound ? "at most " : "", cost.cost);
+    else
+        fputs("none of the rungs", out);
+}
+
+static void put_level(FILE *out, const struct brc_converge_report *r, double level,
+                      struct brc_converge_cost adaptive, struct brc_converge_cost fixed)
+{
+    fprintf(out, "%5.2f %%: ", 100 * level);
+    put_cost(out, adaptive);
+    fputs(" against ", out);
+    put_cost(out, fixed);
+    if (isfinite(adaptive.cost) && isfinite(fixed.cost))
+        fprintf(out, ", fixed takes %.2f times as many", fixed.cost / adaptive.cost);
+    if (level < r->uncertainty)
+        fputs(" (below the uncertainty of the reference)", out);
+    fputc('\n', out);
+}
+
+/* At some errors, and at that of the case as written, or of the reference where that is larger. */
+static void put_loadings(FILE *out, const struct brc_converge_report *r)
+{
+    struct brc_converge_rung adaptive[BRC_CONVERGE_MAX_SETTINGS], fixed[BRC_CONVERGE_MAX_SETTINGS];
+    int n = take_steps(r, "loading", adaptive), m = take_steps(r, "rate", fixed);
+    const struct brc_converge_row *the_case = &r->row[BRC_CONVERGE_AT_CASE];
+    if (n == 0 || m == 0)
+        return;
+    fputs("steps for an error, adaptive against fixed loading:\n", out);
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
+        fputs("              ", out);
+        put_level(out, r, levels[i], brc_converge_cost(adaptive, n, 0, levels[i]),
+                  brc_converge_cost(fixed, m, 0, levels[i]));
+    }
+    double level = fmax(fabs(the_case->error.mean), r->uncertainty);
+    if (!isfinite(level))
+        return;
+    fputs("  as written, ", out);
+    put_level(out, r, level, (struct brc_converge_cost){.cost = the_case->steps},
+              brc_converge_cost(fixed, m, 0, level));
+}
+
+/* ---- everything ---------------------------------------------------------------------------- */
+
+static void put_cheapest(FILE *out, const struct brc_converge_report *r)
+{
+    char cpu[TEXT_SIZE];
+    for (int k = 0; k < 2; k++) {
+        double within = brc_converge_within[k];
+        fprintf(out, "cheapest within %g %%: ", 100 * within);
+        if (r->cheapest[k] < 0) {
+            fputs("none of these settings\n", out);
+            continue;
+        }
+        const struct brc_converge_row *row = &r->row[r->cheapest[k]];
+        fprintf(out, "%s %s, %.0f steps, %s s%s\n", row->setting->axis, row->setting->label,
+                row->steps, digits(row->cpu_s, cpu),
+                brc_converge_is_shown(r, r->cheapest[k], within)
+                    ? ""
+                    : "; its uncertainty reaches beyond");
+    }
+}
+
+void brc_converge_print(FILE *out, const struct brc_converge_study *study,
+                        const struct brc_converge_report *report)
+{
+    const struct brc_job *job = study->order->job;
+    int seeds = study->order->seeds, first = job->specimen.seed;
+    fprintf(out, "%s\n", *job->file.head.title ? job->file.head.title : job->name);
+    fprintf(out, "%s, %d specimen%s (seed %d", study->results[study->observable].name, seeds,
+            seeds > 1 ? "s" : "", first);
+    fprintf(out, seeds > 1 ? " to %d)\n" : ")\n", first + seeds - 1);
+    for (int i = 0; i < study->n_models; i++) {
+        const struct brc_converge_report *r = &report[i];
+        fputc('\n', out);
+        put_head(out, study, r);
+        put_rows(out, study, r, BRC_CONVERGE_CASE, "");
+        put_rows(out, study, r, BRC_CONVERGE_REFERENCE, "");
+        put_rows(out, study, r, BRC_CONVERGE_LADDER, "");
+        put_rows(out, study, r, BRC_CONVERGE_CHOICE,
+                 "choices of the model: differences to the case");
+        put_rows(out, study, r, BRC_CONVERGE_GRAINS, "other grains: differences to the case");
+        put_rule(out);
+        put_cheapest(out, r);
+        put_loadings(out, r);
+    }
+    fputs("\nerror: mean over the specimens against the reference; +-: its standard error; one: "
+          "rms on "
+          "one specimen\n"
+          "?: its uncertainty reaches beyond; as written: the case itself\n",
+          out);
+}
+
+/* ---- CSV ----------------------------------------------------------------------------------- */
+
+static void put_csv_row(FILE *out, const struct brc_converge_report *r, int i)
+{
+    static const char *const role[] = {"case", "reference", "ladder", "choice", "grains"};
+    const struct brc_converge_row *row = &r->row[i];
+    const char *const words[] = {r->model->model->name, row->setting->axis, row->setting->label};
+    for (int k = 0; k < 3; k++) {
+        brc_output_cell(out, words[k]);
+        fputc(',', out);
+    }
+    fprintf(out, "%s,%d,%.9g,%.6g,%.6g,%.6g,%.9g,%.6g", role[row->setting->role], row->n_good,
+            row->value, row->error.mean, row->error.deviation, row->error.single, row->steps,
+            row->cpu_s);
+    for (int k = 0; k < 2; k++)
+        fprintf(out, ",%d", r->cheapest[k] == i);
+    fprintf(out, ",%.6g\n", r->uncertainty);
+}
+
+int brc_converge_csv(struct brc_context *ctx, const struct brc_converge_study *study,
+                     const struct brc_converge_report *report)
+{
+    char path[PATH_SIZE], *text = NULL;
+    size_t size = 0;
+    const struct brc_result *seen = &study->results[study->observable];
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for converge.csv");
+    fprintf(out,
+            "model,axis,setting,role,runs [1],%s [%s],error [1],standard_error [1],"
+            "one_specimen [1],steps [1],cpu_s [s],cheapest_1,cheapest_5,"
+            "reference_uncertainty [1]\n",
+            seen->name, seen->unit);
+    for (int i = 0; i < study->n_models; i++)
+        for (int k = 0; k < report[i].n; k++)
+            put_csv_row(out, &report[i], k);
+    fclose(out);
+    snprintf(path, sizeof path, "%s/converge.csv", study->order->dir);
+    int code = brc_output_text(ctx, path, text);
+    free(text);
+    return code;
+}

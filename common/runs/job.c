@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/job.h"
+
+#include "common/runs/applies.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N_COMMON = 4, LINE_SIZE = 512 };
+
+bool brc_job_section(int i, const char **name, struct brc_param_list *list)
+{
+    static const char *const common[N_COMMON] = {"specimen", "test", "run", "output"};
+    const struct brc_param_list *const lists[N_COMMON] = {&brc_specimen_param_list,
+                                                          &brc_test_param_list, &brc_run_param_list,
+                                                          &brc_output_param_list};
+    if (i < N_COMMON) {
+        *name = common[i];
+        *list = *lists[i];
+        return true;
+    }
+    if (i - N_COMMON >= brc_registry_count())
+        return false;
+    *name = brc_registry_at(i - N_COMMON)->name;
+    *list = brc_registry_at(i - N_COMMON)->params;
+    return true;
+}
+
+static void *section_values(struct brc_job *job, int i)
+{
+    void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
+    return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
+}
+
+const void *brc_job_values(const struct brc_job *job, int i)
+{
+    const void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
+    return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
+}
+
+static void take_name(struct brc_job *job, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(job->name, sizeof job->name, "%s", slash ? slash + 1 : path);
+    char *dot = strrchr(job->name, '.');
+    if (dot && dot != job->name)
+        *dot = '\0';
+}
+
+static int make_room(struct brc_context *ctx, struct brc_job *job)
+{
+    job->n_models = brc_registry_count();
+    if (job->n_models > BRC_JOB_MAX_MODELS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%d models are registered, %d are allowed", job->n_models,
+                 BRC_JOB_MAX_MODELS);
+    for (int i = 0; i < job->n_models; i++) {
+        job->model_params[i] = brc_alloc(ctx, 1, brc_registry_at(i)->params.owner_size);
+        if (!job->model_params[i])
+            return BRC_ERR_MEMORY;
+    }
+    return 0;
+}
+
+/* Sides of a core that is loaded along its axis. Those of a disc, which a Brazilian test needs
+ * under its platens (specimen.c), would make polyhedra a third stiffer: a side cuts more corners
+ * into the outer facets, and each corner is a spring. */
+enum { CORE_SIDES = 64 };
+
+static void choose_sides(struct brc_job *job)
+{
+    struct brc_specimen_params *s = &job->specimen;
+    if (s->sides == 0 && s->grains != BRC_GRAINS_MESH && job->test.kind != BRC_TEST_BRAZILIAN)
+        s->sides = CORE_SIDES;
+}
+
+/* A section, or a key of the top level, that stands as if it were a key of another section. */
+static int check_indents(struct brc_context *ctx, const struct brc_job *job)
+{
+    const struct brc_case *c = &job->file;
+    const char *section;
+    struct brc_param_list list;
+    for (int i = 0; brc_job_section(i, &section, &list); i++)
+        for (size_t k = 0; k < c->n_sections; k++) {
+            const char *name = c->sections[k].name, *dot = strchr(name, '.');
+            if (dot && strcmp(dot + 1, section) == 0)
+                BRC_FAIL(ctx, BRC_ERR_INPUT,
+                         "%s:%d: %s is a section, but it is indented under %.*s; write it in the "
+                         "first column",
+                         c->path, c->sections[k].line, section, (int)(dot - name), name);
+        }
+    for (size_t k = 0; k < c->n; k++) {
+        const struct brc_case_entry *e = &c->entries[k];
+        if (*e->section && !e->is_override && brc_params_find(brc_case_param_list, e->key))
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "%s:%d: %s is a key of the top level, but it is indented under %s; write it "
+                     "in the first column",
+                     c->path, e->line, e->key, e->section);
+    }
+    return 0;
+}
+
+static int judge(struct brc_context *ctx, struct brc_job *job)
+{
+    const char *names[N_COMMON + BRC_JOB_MAX_MODELS];
+    struct brc_param_list list;
+    int i = 0;
+    BRC_TRY(check_indents(ctx, job));
+    for (; brc_job_section(i, &names[i], &list); i++)
+        BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
+    BRC_TRY(brc_case_finish(ctx, &job->file, names, (size_t)i));
+    for (int k = 0; k < i; k++)
+        BRC_TRY(brc_applies_check(ctx, job, k, section_values(job, k)));
+    int code = brc_rig_check(ctx, &job->test);
+    if (code != 0)
+        brc_job_locate(ctx, job);
+    choose_sides(job);
+    return code;
+}
+
+static int start(struct brc_context *ctx, struct brc_job *job, const char *path)
+{
+    memset(job, 0, sizeof *job);
+    take_name(job, path);
+    if (!brc_case_is_text(job->name))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "the name of the case file is not valid UTF-8 text, and it stands in the results; "
+                 "rename the file");
+    return make_room(ctx, job);
+}
+
+/* Reads on from the case itself. */
+static int finish(struct brc_context *ctx, struct brc_job *job, const char *const *overrides, int n)
+{
+    for (int k = 0; k < n; k++)
+        BRC_TRY(brc_case_override(ctx, &job->file, overrides[k]));
+    BRC_TRY(judge(ctx, job));
+    return brc_job_find_files(ctx, job);
+}
+
+int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
+                 const char *const *overrides, int n)
+{
+    BRC_TRY(start(ctx, job, path));
+    BRC_TRY(brc_case_read(ctx, path, &job->file));
+    return finish(ctx, job, overrides, n);
+}
+
+int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *path, const char *text)
+{
+    BRC_TRY(start(ctx, job, path));
+    BRC_TRY(brc_case_parse(ctx, path, text, strlen(text), &job->file));
+    return finish(ctx, job, NULL, 0);
+}
+
+static int repeat_override(struct brc_context *ctx, struct brc_case *c,
+                           const struct brc_case_entry *e)
+{
+    size_t size = strlen(e->text) + 3 * BRC_CASE_KEY_SIZE;
+    char *assignment = brc_alloc(ctx, size, 1);
+    if (!assignment)
+        return BRC_ERR_MEMORY;
+    snprintf(assignment, size, "%s%s%s%s=%s", e->section, *e->section ? "." : "",
+             *e->parent ? e->parent : e->key, *e->parent ? ".rule" : "", e->text);
+    int code = brc_case_override(ctx, c, assignment);
+    free(assignment);
+    return code;
+}
+
+int brc_job_change(struct brc_context *ctx, const struct brc_job *job, const char *const *overrides,
+                   int n, struct brc_job *out)
+{
+    const char *text = brc_case_text(&job->file);
+    BRC_TRY(start(ctx, out, job->file.path));
+    BRC_TRY(brc_case_parse(ctx, job->file.path, text, strlen(text), &out->file));
+    for (size_t i = 0; i < job->file.n; i++)
+        if (job->file.entries[i].is_override)
+            BRC_TRY(repeat_override(ctx, &out->file, &job->file.entries[i]));
+    return finish(ctx, out, overrides, n);
+}
+
+void brc_job_free(struct brc_job *job)
+{
+    for (int i = 0; i < job->n_models; i++)
+        free(job->model_params[i]);
+    brc_case_free(&job->file);
+    memset(job, 0, sizeof *job);
+}
+
+int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model)
+{
+    char all[400] = "";
+    *model = brc_registry_find(name);
+    if (*model)
+        return 0;
+    for (int i = 0; i < brc_registry_count(); i++) {
+        size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", brc_registry_at(i)->name);
+    }
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "unknown model '%.60s'; there are: %s", name, all);
+}
+
+int brc_job_models(struct brc_context *ctx, const struct brc_job *job,
+                   const struct brc_model **model, int cap, int *n)
+{
+    int n_named = (int)job->file.n_models;
+    *n = n_named > 0 ? n_named : brc_registry_count();
+    if (*n > cap)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%d models to compare, %d at most; name fewer in 'models'", *n,
+                 cap);
+    for (int i = 0; i < *n; i++) {
+        model[i] = brc_registry_at(i);
+        if (n_named > 0)
+            BRC_TRY(brc_job_model(ctx, job->file.models[i], &model[i]));
+    }
+    return 0;
+}
+
+const void *brc_job_params(const struct brc_job *job, const struct brc_model *model)
+{
+    for (int i = 0; i < job->n_models; i++)
+        if (brc_registry_at(i) == model)
+            return job->model_params[i];
+    return NULL;
+}
+
+/* ---- the parameters as text ---------------------------------------------------------------- */
+
+static char *add_section(struct brc_context *ctx, char *text, const char *section,
+                         struct brc_param_list list, const void *values)
+{
+    char line[LINE_SIZE], value[BRC_TEXT_SIZE];
+    size_t used = text ? strlen(text) : 0;
+    char *grown = brc_realloc(ctx, text, used + (size_t)list.n * LINE_SIZE + 1, 1);
+    if (!grown) {
+        free(text);
+        return NULL;
+    }
+    grown[used] = '\0';
+    for (int i = 0; i < list.n; i++) {
+        if (brc_job_names_file(section, &list.params[i]))
+            continue;
+        brc_params_text(&list.params[i], values, value, sizeof value);
+        int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
+        memcpy(grown + used, line, (size_t)n + 1);
+        used += (size_t)n;
+    }
+    return grown;
+}
+
+char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
+                   const struct brc_model *model)
+{
+    /* an automatic rate as a number: it hangs on strain_max, which may change when a run goes on */
+    struct brc_test_params test = job->test;
+    test.rate = brc_rig_start_rate(&test);
+    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &job->specimen);
+    if (text)
+        text = add_section(ctx, text, "test", brc_test_param_list, &test);
+    if (text)
+        text = add_section(ctx, text, "run", brc_run_param_list, &job->run);
+    if (text)
+        text = add_section(ctx, text, model->name, model->params, brc_job_params(job, model));
+    return text;
+}
+
+/* Keys that may differ between the parts of one run. */
+static bool may_change(const char *line, size_t key_length)
+{
+    static const char *const keys[] = {"test.strain_max", "test.stop_drop",       "run.max_steps",
+                                       "run.checkpoint",  "run.checkpoint_steps", "run.simd",
+                                       "specimen.cache"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (strlen(keys[i]) == key_length && strncmp(line, keys[i], key_length) == 0)
+            return true;
+    return false;
+}
+
+int brc_job_same(struct brc_context *ctx, const char *saved, const char *now)
+{
+    while (*saved && *now) {
+        size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
+        bool equal = a == b && strncmp(saved, now, a) == 0;
+        bool is_allowed = may_change(saved, strcspn(saved, " ")) && may_change(now, key);
+        if (!equal && !is_allowed)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "the saved state was made with '%.*s', the case says '%.*s'; resume with "
+                     "unchanged parameters (--set included%s) or start anew with --force",
+                     (int)a, saved, (int)b, now,
+                     strncmp(now, "test.rate ", 10) == 0
+                         ? "; an automatic rate follows test.strain_max: give the first one"
+                         : "");
+        saved += a + (saved[a] != '\0');
+        now += b + (now[b] != '\0');
+    }
+    if (*saved || *now)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "the saved state has other parameters than this version; "
+                 "resume with the version that wrote it");
+    return 0;
+}
+
+/* ---- places of keys ------------------------------------------------------------------------ */
+
+/* Does text start with "section.key" of the list? key gets the key. */
+static bool starts_with_key(const char *text, const char *section, struct brc_param_list list,
+                            char key[BRC_CASE_KEY_SIZE])
+{
+    size_t n = strlen(section);
+    if (strncmp(text, section, n) != 0 || text[n] != '.')
+        return false;
+    size_t length = strspn(text + n + 1, "abcdefghijklmnopqrstuvwxyz0123456789_");
+    snprintf(key, BRC_CASE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
+    return brc_params_find(list, key) != NULL;
+}
+
+/* The first section.key in text; false when there is none. */
+static bool find_key(const char *text, const char **section, struct brc_param_list *list,
+                     char key[BRC_CASE_KEY_SIZE])
+{
+    for (const char *c = text; *c; c++) {
+        bool is_start = c == text || strchr(" '(", c[-1]);
+        for (int i = 0; is_start && brc_job_section(i, section, list); i++)
+            if (starts_with_key(c, *section, *list, key))
+                return true;
+    }
+    return false;
+}
+
+void brc_job_locate(struct brc_context *ctx, const struct brc_job *job)
+{
+    char key[BRC_CASE_KEY_SIZE], where[BRC_CASE_WHERE_SIZE];
+    const char *section;
+    struct brc_param_list list;
+    bool is_input =
+        ctx->code == BRC_ERR_INPUT || ctx->code == BRC_ERR_GEOMETRY || ctx->code == BRC_ERR_IO;
+    if (!is_input || !find_key(ctx->message, &section, &list, key))
+        return;
+    const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, key, list);
+    const struct brc_case_place *s = brc_case_find_section(&job->file, section);
+    brc_case_where(&job->file, e ? e->line : s ? s->line : 0, e && e->is_override, where);
+    size_t n = strlen(where), left = sizeof ctx->message - n - 3;
+    memmove(ctx->message + n + 2, ctx->message, left);
+    ctx->message[sizeof ctx->message - 1] = '\0';
+    memcpy(ctx->message, where, n);
+    memcpy(ctx->message + n, ": ", 2);
+}

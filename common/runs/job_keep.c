@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The files that a case names, and the case that a run keeps. */
+#define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): glibc has realpath so */
+
+#include "common/runs/job.h"
+
+#include "common/runs/applies.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+bool brc_job_names_file(const char *section, const struct brc_param *p)
+{
+    return p->kind == BRC_TEXT && strcmp(section, "specimen") == 0;
+}
+
+static char *text_of(const struct brc_param *p, struct brc_specimen_params *values)
+{
+    return (char *)values + p->offset;
+}
+
+/* ---- where files are ----------------------------------------------------------------------- */
+
+/* A case that comes through a pipe has no folder of its own. */
+static bool has_folder(const char *path)
+{
+    struct stat status;
+    return strchr(path, '/') && (stat(path, &status) != 0 || S_ISREG(status.st_mode));
+}
+
+static int find_file(struct brc_context *ctx, const struct brc_job *job, const char *key,
+                     char *name)
+{
+    const char *path = job->file.path, *slash = strrchr(path, '/');
+    char found[BRC_TEXT_SIZE];
+    const struct brc_case_entry *e =
+        brc_case_find_entry(&job->file, "specimen", key, brc_specimen_param_list);
+    if (!e || e->is_override || *name == '\0' || *name == '/' || !has_folder(path))
+        return 0;
+    int n = snprintf(found, sizeof found, "%.*s%s", (int)(slash - path) + 1, path, name);
+    if (n >= (int)sizeof found)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s:%d: specimen.%s: the path %.*s%s is longer than %d bytes; start breccia in a "
+                 "folder that is nearer to it",
+                 path, e->line, key, (int)(slash - path) + 1, path, name, BRC_TEXT_SIZE - 1);
+    memcpy(name, found, sizeof found);
+    return 0;
+}
+
+int brc_job_find_files(struct brc_context *ctx, struct brc_job *job)
+{
+    for (int i = 0; i < brc_specimen_param_list.n; i++) {
+        const struct brc_param *p = &brc_specimen_param_list.params[i];
+        if (brc_job_names_file("specimen", p))
+            BRC_TRY(find_file(ctx, job, p->key, text_of(p, &job->specimen)));
+    }
+    return 0;
+}
+
+/* The absolute path of a file's folder; the file itself may be a link. Allocated, NULL when there
+ * is no such folder. */
+static char *folder_of(struct brc_context *ctx, const char *name)
+{
+    char *folder = brc_alloc(ctx, strlen(name) + 2, 1);
+    if (!folder)
+        return NULL;
+    strcpy(folder, name);
+    char *slash = strrchr(folder, '/');
+    strcpy(slash ? slash + 1 : folder, ".");
+    char *real = realpath(folder, NULL);
+    free(folder);
+    return real;
+}
+
+/* The path from one absolute folder to another, "" or with a slash at its end; -1: it is longer
+ * than size. */
+static int path_between(const char *from, const char *to, char *path, size_t size)
+{
+    size_t same = 0, used = 0;
+    for (size_t i = 0;; i++) {
+        bool ends = (from[i] == '/' || !from[i]) && (to[i] == '/' || !to[i]);
+        if (ends)
+            same = i;
+        if (!from[i] || from[i] != to[i])
+            break;
+    }
+    path[0] = '\0';
+    for (const char *c = from + same; *c && used + 4 < size; c++)
+        if (*c == '/' && c[1])
+            used += (size_t)snprintf(path + used, size - used, "../");
+    const char *rest = to + same + (to[same] == '/');
+    int n = snprintf(path + used, size - used, "%s%s", rest, *rest ? "/" : "");
+    return used + 4 >= size || used + (size_t)n >= size ? -1 : 0;
+}
+
+bool brc_job_is_same_file(const char *name, const char *path)
+{
+    struct stat a, b;
+    return *name && stat(name, &a) == 0 && stat(path, &b) == 0 && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+bool brc_job_is_input(const struct brc_job *job, const char *path)
+{
+    struct brc_specimen_params specimen = job->specimen;
+    bool is_input = brc_job_is_same_file(job->file.path, path);
+    for (int i = 0; i < brc_specimen_param_list.n; i++) {
+        const struct brc_param *p = &brc_specimen_param_list.params[i];
+        if (brc_job_names_file("specimen", p))
+            is_input = is_input || brc_job_is_same_file(text_of(p, &specimen), path);
+    }
+    return is_input;
+}
+
+/* ---- the case that is kept ----------------------------------------------------------------- */
+
+/* A relative name as the folder dir sees it. */
+static int keep_file(struct brc_context *ctx, struct brc_case *c, const struct brc_param *p,
+                     const char *name, const char *dir)
+{
+    char path[BRC_TEXT_SIZE] = "";
+    const char *slash = strrchr(name, '/'), *last = slash ? slash + 1 : name;
+    if (*name == '\0' || *name == '/')
+        return 0;
+    char *from = realpath(dir, NULL), *to = folder_of(ctx, name);
+    bool is_good = from && to && path_between(from, to, path, sizeof path) == 0 &&
+                   strlen(path) + strlen(last) < sizeof path;
+    free(from);
+    free(to);
+    if (!is_good)
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "specimen.%s: from %s there is no path of at most %d bytes to %s; name the file by "
+            "a path that begins with /, or choose another folder with -o",
+            p->key, dir, BRC_TEXT_SIZE - 1, name);
+    strcat(path, last);
+    const struct brc_case_entry *e =
+        brc_case_find_entry(c, "specimen", p->key, brc_specimen_param_list);
+    if (e && strcmp(e->text, path) == 0)
+        return 0;
+    return brc_case_write(ctx, c, "specimen", p->key, brc_specimen_param_list, path);
+}
+
+static int keep_files(struct brc_context *ctx, const struct brc_job *job, const char *dir,
+                      struct brc_case *c)
+{
+    struct brc_specimen_params specimen = job->specimen;
+    for (int i = 0; i < brc_specimen_param_list.n; i++) {
+        const struct brc_param *p = &brc_specimen_param_list.params[i];
+        if (brc_job_names_file("specimen", p))
+            BRC_TRY(keep_file(ctx, c, p, text_of(p, &specimen), dir));
+    }
+    return 0;
+}
+
+static struct brc_param_list list_of(const char *section)
+{
+    const char *name;
+    struct brc_param_list list;
+    for (int i = 0; brc_job_section(i, &name, &list); i++)
+        if (strcmp(name, section) == 0)
+            return list;
+    return brc_case_param_list;
+}
+
+/* Of several overrides of a key the last one holds. */
+static int keep_overrides(struct brc_context *ctx, const struct brc_case *from, struct brc_case *c)
+{
+    for (size_t i = 0; i < from->n; i++) {
+        const struct brc_case_entry *e = &from->entries[i];
+        const struct brc_param_list list = list_of(e->section);
+        const char *key = brc_case_key(e, list);
+        if (e->is_override && brc_case_find_entry(from, e->section, key, list) == e)
+            BRC_TRY(brc_case_write(ctx, c, e->section, key, list, e->text));
+    }
+    return 0;
+}
+
+/* Keys of the file that an override has made meaningless: without the override's name they would be
+ * errors. */
+static int drop_meaningless(struct brc_context *ctx, const struct brc_job *job, struct brc_case *c)
+{
+    const char *section, *clause;
+    struct brc_param_list list;
+    for (int i = 0; brc_job_section(i, &section, &list); i++)
+        for (int k = 0; k < list.n; k++) {
+            BRC_TRY(brc_applies(ctx, job, section, &list.params[k], &clause));
+            if (clause)
+                BRC_TRY(brc_case_remove(ctx, c, section, list.params[k].key, list));
+        }
+    return 0;
+}
+
+static int write_kept(struct brc_context *ctx, const struct brc_job *job,
+                      const struct brc_model *model, const char *dir, struct brc_case *c)
+{
+    const char *text = brc_case_text(&job->file);
+    BRC_TRY(brc_case_parse(ctx, job->file.path, text, strlen(text), c));
+    BRC_TRY(keep_overrides(ctx, &job->file, c));
+    BRC_TRY(drop_meaningless(ctx, job, c));
+    BRC_TRY(keep_files(ctx, job, dir, c));
+    if (strcmp(c->head.model, model->name) == 0)
+        return 0;
+    return brc_case_write(ctx, c, "", "model", brc_case_param_list, model->name);
+}
+
+/* What is kept is read back: a case that does not make the same job is worse than none. */
+static int check_kept(struct brc_context *ctx, const struct brc_job *job,
+                      const struct brc_model *model, const char *text)
+{
+    struct brc_job again;
+    int code = brc_job_parse(ctx, &again, job->file.path, text);
+    char *wanted = code == 0 ? brc_job_text(ctx, job, model) : NULL;
+    char *got = code == 0 ? brc_job_text(ctx, &again, model) : NULL;
+    if (code == 0)
+        code = !wanted || !got ? BRC_ERR_MEMORY : brc_job_same(ctx, wanted, got);
+    free(wanted);
+    free(got);
+    brc_job_free(&again);
+    return code;
+}
+
+int brc_job_keep(struct brc_context *ctx, const struct brc_job *job, const struct brc_model *model,
+                 const char *dir, char **text)
+{
+    struct brc_case c;
+    int code = write_kept(ctx, job, model, dir, &c);
+    if (code == 0)
+        code = check_kept(ctx, job, model, brc_case_text(&c));
+    *text = NULL;
+    if (code == 0 && !(*text = brc_alloc(ctx, strlen(brc_case_text(&c)) + 1, 1)))
+        code = BRC_ERR_MEMORY;
+    if (code == 0)
+        strcpy(*text, brc_case_text(&c));
+    brc_case_free(&c);
+    return code;
+}

@@ -1,0 +1,587 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/run.h"
+
+#include "common/engine/blowup.h"
+#include "common/engine/fragments.h"
+#include "common/output/frames.h"
+#include "common/output/plot.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096, DESCRIPTION_SIZE = 4096 };
+
+/* What a run counts beside its state; goes on when it is resumed. */
+#define RUN_COUNTS(SCALAR, VECTOR)                                                             \
+    SCALAR(double, cpu_s, BRC_STATE, "s", "processor time of the step loop")                   \
+    SCALAR(double, wall_s, BRC_STATE, "s", "elapsed time of the step loop")                    \
+    SCALAR(double, contact_steps, BRC_STATE, "1", "contacts with a spring, summed over steps") \
+    SCALAR(int64_t, n_active, BRC_STATE, "1", "contacts with a spring at the last count")
+
+#define COUNT_MEMBER(type, name, flags, unit, meaning) type name;
+#define NO_VECTOR(type, name, n, flags, unit, meaning)
+struct counts {
+    RUN_COUNTS(COUNT_MEMBER, NO_VECTOR)
+};
+#define BRC_OWNER struct counts
+static const struct brc_field count_fields[] = {RUN_COUNTS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+struct run {
+    struct brc_context *ctx;
+    const struct brc_run_order *order;
+    struct brc_sim sim;
+    struct counts counts;
+    struct brc_frames frames;
+    char *case_text, *parameters, seed[16]; /* for the files */
+    FILE *log;
+    double cpu_before, wall_before;
+    double saved_at; /* s, wall clock at the last save */
+    const char *ended_by;
+};
+
+/* ---- signals ------------------------------------------------------------------------------- */
+
+/* Signals that end a run: of the terminal, of batch systems, of a reader that has gone. */
+static const int stop_signal[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGUSR1, SIGUSR2, SIGXCPU};
+enum { N_STOP_SIGNALS = sizeof stop_signal / sizeof stop_signal[0] };
+
+/* They are blocked and looked for between steps, so that no global state is needed. What the parent
+ * has told us to ignore (nohup) stays ignored. */
+static void stop_signals(sigset_t *set)
+{
+    sigemptyset(set);
+    for (int i = 0; i < N_STOP_SIGNALS; i++) {
+        struct sigaction now;
+        if (sigaction(stop_signal[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN)
+            sigaddset(set, stop_signal[i]);
+    }
+}
+
+static void leave(int number)
+{
+    static const char text[] =
+        "breccia: interrupted before the first step; nothing was saved, start again\n";
+    ssize_t n = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)n, (void)number;
+    _exit(brc_error_exit_status(BRC_ERR_NOT_BEGUN));
+}
+
+void brc_run_leave_on_signals(void)
+{
+    for (int i = 0; i < N_STOP_SIGNALS; i++) {
+        struct sigaction now;
+        if (stop_signal[i] == SIGPIPE || sigaction(stop_signal[i], NULL, &now) != 0 ||
+            now.sa_handler == SIG_IGN)
+            continue;
+        now = (struct sigaction){.sa_handler = leave};
+        sigaction(stop_signal[i], &now, NULL);
+    }
+}
+
+void brc_run_hold_signals(void)
+{
+    sigset_t set;
+    stop_signals(&set);
+    sigprocmask(SIG_BLOCK, &set, NULL);
+}
+
+bool brc_run_is_stopped(void)
+{
+    sigset_t set, pending;
+    stop_signals(&set);
+    sigemptyset(&pending);
+    sigpending(&pending);
+    for (int number = 1; number < 32; number++)
+        if (sigismember(&set, number) == 1 && sigismember(&pending, number) == 1)
+            return true;
+    return false;
+}
+
+/* ---- folder -------------------------------------------------------------------------------- */
+
+static int in_folder(struct brc_context *ctx, const char *dir, const char *name,
+                     char path[PATH_SIZE])
+{
+    return brc_run_path(ctx, dir, name, path, PATH_SIZE);
+}
+
+/* The log is locked while the run lasts, so that no second run writes here. Its content stays. */
+static int open_log(struct run *r)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "log", path));
+    r->log = fopen(path, "a");
+    if (!r->log)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    if (fcntl(fileno(r->log), F_SETLK, &lock) != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
+                 r->order->dir);
+    return 0;
+}
+
+/* The case takes its place first: on a full disk that fails, and the old results are still there.
+ */
+static int replace_old(struct run *r)
+{
+    const struct brc_run_order *o = r->order;
+    BRC_TRY(brc_run_keep_case(r->ctx, o->dir, o->job, r->case_text, true));
+    BRC_TRY(brc_run_remove_results(r->ctx, o->dir));
+    if (ftruncate(fileno(r->log), 0) != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty the log in %s: %s", o->dir, strerror(errno));
+    return 0;
+}
+
+static void note(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* A line of the log. */
+static void note(struct run *r, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vfprintf(r->log, format, args);
+    va_end(args);
+    fputc('\n', r->log);
+    fflush(r->log);
+}
+
+/* ---- state --------------------------------------------------------------------------------- */
+
+static double cpu_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void take_times(struct run *r)
+{
+    double cpu = cpu_now(), wall = brc_progress_clock();
+    r->counts.cpu_s += cpu - r->cpu_before;
+    r->counts.wall_s += wall - r->wall_before;
+    r->cpu_before = cpu;
+    r->wall_before = wall;
+}
+
+/* What files tell of their origin, and what a state holds beside the simulation. */
+enum { N_TEXTS = 4, N_PARTS = 2 };
+struct extra {
+    struct brc_h5_text texts[N_TEXTS];
+    struct brc_state_part parts[N_PARTS];
+    struct brc_h5_extra h5; /* points to those */
+};
+
+static void make_extra(struct run *r, struct extra *e)
+{
+    const struct brc_job *job = r->order->job;
+    *e = (struct extra){.texts = {{"case", r->case_text},
+                                  {"case_name", job->name},
+                                  {"parameters", r->parameters},
+                                  {"seed", r->seed}},
+                        .parts = {{.path = "run",
+                                   .set = BRC_FIELDSET(count_fields, struct counts),
+                                   .base = &r->counts,
+                                   .n = 1,
+                                   .is_fixed = true},
+                                  {.path = "frames",
+                                   .set = r->frames.table.set,
+                                   .table = &r->frames.table,
+                                   .n = r->frames.table.n}}};
+    e->h5 = (struct brc_h5_extra){e->texts, N_TEXTS, e->parts, N_PARTS};
+}
+
+static int save(struct run *r)
+{
+    char path[PATH_SIZE];
+    struct extra extra;
+    take_times(r);
+    make_extra(r, &extra);
+    BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->order->dir, &extra.h5));
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
+    BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->order->dir));
+    /* limits of a run that goes on may have changed: so does the case, with the state */
+    BRC_TRY(brc_run_keep_case(r->ctx, r->order->dir, r->order->job, r->case_text, false));
+    r->saved_at = brc_progress_clock();
+    return 0;
+}
+
+/* Named before parameters are compared: another model has others anyway. */
+static int check_model(struct run *r, const char *path)
+{
+    char *saved;
+    int code = 0;
+    BRC_TRY(brc_h5_read_text(r->ctx, path, "model", &saved));
+    if (strcmp(saved, r->order->model->name) != 0)
+        code = brc_error_set(r->ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                             "%s is a state of the model %s, not %s; choose it with --model, or "
+                             "another folder with -o",
+                             path, saved, r->order->model->name);
+    free(saved);
+    return code;
+}
+
+static int load(struct run *r)
+{
+    char path[PATH_SIZE], *saved;
+    struct extra extra;
+    make_extra(r, &extra);
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(check_model(r, path));
+    BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
+    int code = brc_job_same(r->ctx, saved, r->parameters);
+    free(saved);
+    BRC_TRY(code);
+    BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra.h5));
+    return brc_frames_sweep(r->ctx, &r->frames, r->order->dir);
+}
+
+static int take_frames(struct run *r)
+{
+    const struct brc_output_params *output = &r->order->job->output;
+    struct extra extra;
+    if (!brc_frames_are_on(output))
+        return 0;
+    make_extra(r, &extra);
+    return brc_frames_take(r->ctx, &r->frames, r->order->dir, output, &r->sim, &extra.h5);
+}
+
+static int write_last_frame(struct run *r)
+{
+    struct extra extra;
+    make_extra(r, &extra);
+    return brc_frames_write(r->ctx, &r->frames, r->order->dir, &r->sim, &extra.h5);
+}
+
+/* ---- step loop ----------------------------------------------------------------------------- */
+
+static size_t count_active(const struct brc_contacts *c)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < c->n; i++)
+        n += c->k[i][0] > 0;
+    return n;
+}
+
+static void report(struct run *r, bool is_done, bool is_stopped)
+{
+    const struct brc_rig *rig = &r->sim.rig;
+    double most = (double)(r->sim.run.max_steps - r->sim.step);
+    double by_rate = rig->n_platens > 0 ? brc_rig_steps_left(&r->sim) : most;
+    struct brc_progress_report now = {.steps_left = isfinite(by_rate) ? fmin(by_rate, most) : NAN,
+                                      .strain = rig->strain,
+                                      .stress = rig->force / rig->section,
+                                      .step = r->sim.step,
+                                      .broken = (int64_t)r->sim.events.table.n,
+                                      .is_done = is_done,
+                                      .is_stopped = is_stopped};
+    brc_progress_update(r->order->progress, r->order->progress_run, &now);
+}
+
+/* Why the run is over, NULL while it is not. */
+static const char *ended_by(const struct brc_sim *sim)
+{
+    if (brc_rig_done(sim))
+        return sim->rig.strain >= sim->rig.params.strain_max ? "test.strain_max" : "test.stop_drop";
+    if (sim->step >= sim->run.max_steps)
+        return "run.max_steps";
+    return brc_run_is_stopped() ? "signal" : NULL;
+}
+
+/* When a state is saved changes no bit of it. */
+static bool save_is_due(const struct run *r)
+{
+    const struct brc_run_params *p = &r->sim.run;
+    int64_t step = r->sim.step;
+    if (p->checkpoint_steps > 0 && step % p->checkpoint_steps == 0)
+        return true;
+    return p->checkpoint > 0 && brc_progress_clock() - r->saved_at >= p->checkpoint;
+}
+
+/* The last frame is no part of the state: a run that goes on replaces it. */
+static int end_loop(struct run *r)
+{
+    BRC_TRY(save(r));
+    bool has_last = brc_frames_are_on(&r->order->job->output) && strcmp(r->ended_by, "signal") != 0;
+    return has_last ? write_last_frame(r) : 0;
+}
+
+static int step_loop(struct run *r)
+{
+    struct brc_sim *sim = &r->sim;
+    r->cpu_before = cpu_now();
+    r->wall_before = r->saved_at = brc_progress_clock();
+    while (!(r->ended_by = ended_by(sim))) {
+        if (r->counts.n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
+            r->counts.n_active = (int64_t)(count_active(&sim->pairs) + count_active(&sim->platens));
+        BRC_TRY(take_frames(r));
+        BRC_TRY(brc_sim_step(sim));
+        BRC_TRY(brc_blowup_energy(sim));
+        r->counts.contact_steps += (double)r->counts.n_active;
+        if (brc_progress_is_due(r->order->progress))
+            report(r, false, false);
+        if (save_is_due(r))
+            BRC_TRY(save(r));
+    }
+    return end_loop(r);
+}
+
+/* ---- output -------------------------------------------------------------------------------- */
+
+static int check_finite(struct brc_context *ctx, const char *name, double value)
+{
+    if (isfinite(value))
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_BLOWUP,
+             "the result %s is not finite (%g): values of the case, or what follows from them, are "
+             "too large or too small for numbers of double precision",
+             name, value);
+}
+
+/* A result without a note was measured, and is a number. */
+static int check_results(const struct run *r, const struct brc_summary *s)
+{
+    for (int i = 0; i < s->n_results; i++)
+        if (!s->results[i].note)
+            BRC_TRY(check_finite(r->ctx, s->results[i].name, s->results[i].value));
+    if (!r->sim.run.ledger)
+        return 0;
+    BRC_TRY(check_finite(r->ctx, "energy_residual", s->energy_residual));
+    return check_finite(r->ctx, "energy_drift", s->energy_drift);
+}
+
+/* Energies that rounding alone makes: of all springs stretched by this part of the skin. */
+static double rounding_energy(const struct brc_sim *sim)
+{
+    static const double PART = 1e-8;
+    double stiffness = 0;
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        stiffness += sim->pairs.k[i][0];
+    for (size_t i = 0; i < sim->platens.n; i++)
+        stiffness += sim->platens.k[i][0];
+    return stiffness * PART * PART * sim->skin * sim->skin;
+}
+
+static int measure(const struct run *r, struct brc_summary *s)
+{
+    const struct brc_sim *sim = &r->sim;
+    const struct brc_job *job = r->order->job;
+    struct brc_result result[BRC_MAX_RESULTS];
+    struct brc_fragments fragments;
+    double stored[3];
+    sim->model.energy(sim, sim->state, stored);
+    *s = (struct brc_summary){
+        .seed = job->specimen.seed,
+        .n_grains = sim->bodies.n_grains,
+        .n_facets = sim->specimen->facets.n_facets,
+        .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
+        .n_contacts_listed = sim->pairs.n + sim->platens.n,
+        .n_frames = r->frames.table.n,
+        .steps = sim->step,
+        .dt = sim->dt,
+        .cpu_s = r->counts.cpu_s,
+        .wall_s = r->counts.wall_s,
+        .energy_residual = sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
+        .energy_drift = sim->run.ledger ? brc_ledger_drift(&sim->ledger, stored) : NAN,
+        .energy_check = sim->run.ledger
+                            ? brc_ledger_check(&sim->ledger, stored, rounding_energy(sim))
+                            : BRC_ENERGY_OFF,
+        .unbalanced_max = brc_rig_unbalanced_max(sim),
+        .state_hash = brc_sim_hash(sim)};
+    snprintf(s->model, sizeof s->model, "%s", sim->model.name);
+    snprintf(s->title, sizeof s->title, "%s", job->file.head.title);
+    snprintf(s->case_name, sizeof s->case_name, "%s", job->name);
+    snprintf(s->ended_by, sizeof s->ended_by, "%s", r->ended_by ? r->ended_by : "failure");
+    s->is_finished = strncmp(s->ended_by, "test.", 5) == 0;
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        s->n_points += (size_t)sim->pairs.np[i];
+    for (size_t i = 0; i < sim->platens.n; i++)
+        s->n_points += (size_t)sim->platens.np[i];
+    s->n_contacts_mean = r->counts.contact_steps / (double)sim->step;
+    s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
+    s->n_results = brc_rig_results(sim, result);
+    for (int i = 0; i < s->n_results; i++)
+        s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit,
+                                                   result[i].note};
+    BRC_TRY(check_results(r, s));
+    memcpy(s->frame, r->frames.last, sizeof s->frame);
+    int code = brc_fragments_find(r->ctx, sim, &fragments);
+    s->n_fragments = fragments.n;
+    brc_fragments_free(&fragments);
+    return code;
+}
+
+static int write_tables(struct run *r)
+{
+    char path[PATH_SIZE];
+    const char *dir = r->order->dir;
+    BRC_TRY(in_folder(r->ctx, dir, "curve.csv", path));
+    BRC_TRY(brc_output_csv(r->ctx, path, &r->sim.rig.curve.table));
+    BRC_TRY(in_folder(r->ctx, dir, "events.csv", path));
+    return brc_output_csv(r->ctx, path, &r->sim.events.table);
+}
+
+static int draw(struct run *r)
+{
+    const struct brc_job *job = r->order->job;
+    struct brc_plot_runs runs = {.title = job->file.head.title,
+                                 .test = (enum brc_test)job->test.kind,
+                                 .n = 1,
+                                 .label = {r->sim.model.name},
+                                 .folder = {"."}};
+    BRC_TRY(brc_plot_broken(r->ctx, r->order->dir, &r->sim));
+    BRC_TRY(brc_plot_cracks(r->ctx, r->order->dir, &r->sim, &job->output));
+    bool has_moved = r->sim.step > 0; /* else there is nothing to see */
+    return has_moved && job->output.plots
+               ? brc_plot_draw(r->ctx, r->order->dir, &runs, &job->output)
+               : 0;
+}
+
+static int write_results(struct run *r, struct brc_summary *out)
+{
+    char path[PATH_SIZE], energy[512];
+    BRC_TRY(measure(r, out));
+    BRC_TRY(write_tables(r));
+    BRC_TRY(in_folder(r->ctx, r->order->dir, "summary.json", path));
+    BRC_TRY(brc_output_summary(r->ctx, path, out));
+    for (int i = 0; i < out->n_results; i++)
+        if (out->results[i].note)
+            note(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
+    if (*brc_output_energy(out, energy, sizeof energy))
+        note(r, "%s", energy);
+    note(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by, out->steps,
+         out->state_hash);
+    return draw(r);
+}
+
+/* ---- one run ------------------------------------------------------------------------------- */
+
+static void note_header(struct run *r)
+{
+    char description[DESCRIPTION_SIZE] = "";
+    const struct brc_facets *f = &r->order->specimen->facets;
+    r->sim.model.describe(&r->sim, r->sim.state, description, sizeof description);
+    note(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__, r->order->job->name);
+    note(r, "model %s: %s", r->sim.model.name, r->sim.model.citation);
+    if (*description)
+        note(r, "%s", description);
+    note(r, "%zu grains, %zu facets, %zu pairs, %zu platen contacts", f->n_cells, f->n_facets,
+         r->sim.pairs.n, r->sim.platens.n);
+    note(r, "%s", r->parameters);
+    note(r, "case.yaml: digest %016" PRIx64, brc_run_case_digest(r->case_text));
+}
+
+static int check_folder(const struct run *r)
+{
+    const struct brc_run_order *o = r->order;
+    return brc_run_check_folder(r->ctx, o->dir, o->job, o->is_resumed, o->is_forced);
+}
+
+/* A log that a full disk has cut is a failure, unless there is another. */
+static int close_log(struct run *r, int code)
+{
+    if (!r->log)
+        return code;
+    bool has_failed = ferror(r->log);
+    has_failed = fclose(r->log) != 0 || has_failed;
+    if (has_failed && code == 0)
+        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s/log; is the disk full? The results are there",
+                 r->order->dir);
+    return code;
+}
+
+/* Everything that can be refused is refused before the folder is touched. */
+static int prepare(struct run *r)
+{
+    const struct brc_run_order *o = r->order;
+    BRC_TRY(check_folder(r));
+    r->parameters = brc_job_text(r->ctx, o->job, o->model);
+    if (!r->parameters)
+        return BRC_ERR_MEMORY;
+    BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_job_params(o->job, o->model), o->specimen,
+                           &o->job->test, &o->job->run));
+    if (brc_run_is_stopped())
+        BRC_FAIL(r->ctx, BRC_ERR_NOT_BEGUN,
+                 "interrupted before the first step; nothing was saved, and %s is as it was",
+                 o->dir);
+    BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
+    BRC_TRY(brc_job_keep(r->ctx, o->job, o->model, o->dir, &r->case_text));
+    BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->job, r->case_text, o->is_resumed));
+    BRC_TRY(open_log(r));
+    BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
+    bool has_state = o->is_resumed && brc_run_has_file(o->dir, "state.h5");
+    BRC_TRY(has_state ? load(r) : replace_old(r));
+    note_header(r);
+    if (has_state)
+        note(r, "resumed at step %" PRId64, r->sim.step);
+    else if (o->is_resumed)
+        note(r, "nothing was saved before the stop: started anew");
+    return 0;
+}
+
+/* After a failure the curves so far are kept for a look; the last saved state stays. Where writing
+ * has failed, what is there is left alone. */
+static void keep_traces(struct run *r)
+{
+    struct brc_context quiet = BRC_CONTEXT_INIT, *ctx = r->ctx;
+    note(r, "failed at step %" PRId64 ": %s", r->sim.step, ctx->message);
+    if (ctx->code == BRC_ERR_IO)
+        return;
+    r->ctx = &quiet;
+    if (write_tables(r) != 0)
+        note(r, "the curves could not be written either: %s", quiet.message);
+    r->ctx = ctx;
+}
+
+/* Results are there whatever the energy says. */
+static int judge_energy(const struct run *r, const struct brc_summary *s)
+{
+    char text[512];
+    brc_output_energy(s, text, sizeof text);
+    if (s->energy_check == BRC_ENERGY_WRONG && strcmp(r->ended_by, "signal") != 0)
+        BRC_FAIL(r->ctx, BRC_ERR_ENERGY, "%s; results are in %s", text, r->order->dir);
+    if (*text)
+        brc_log(r->ctx, "warning: %s", text);
+    return 0;
+}
+
+int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out)
+{
+    struct run r = {.ctx = ctx, .order = order};
+    brc_frames_init(&r.frames);
+    snprintf(r.seed, sizeof r.seed, "%d", order->job->specimen.seed);
+    bool is_stopped = false;
+    int code = prepare(&r);
+    if (code == 0) {
+        report(&r, false, false);
+        code = step_loop(&r);
+        if (code != 0)
+            keep_traces(&r);
+        else
+            code = write_results(&r, out);
+        is_stopped = code == 0 && strcmp(r.ended_by, "signal") == 0;
+        report(&r, true, is_stopped || code != 0);
+    }
+    if (code == 0)
+        code = judge_energy(&r, out);
+    if (is_stopped)
+        code = brc_error_set(ctx, BRC_ERR_INTERRUPTED, __FILE__, __LINE__,
+                             "interrupted at step %" PRId64 "; the state is saved in %s",
+                             r.sim.step, order->dir);
+    brc_sim_free(&r.sim);
+    brc_frames_free(&r.frames);
+    free(r.case_text);
+    free(r.parameters);
+    return close_log(&r, code);
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One run: a model on a specimen through a test, from the case to the files in its folder. */
+#ifndef BRC_RUN_H
+#define BRC_RUN_H
+
+#include "common/runs/job.h"
+#include "common/base/progress.h"
+
+struct brc_run_order {
+    const struct brc_job *job;
+    const struct brc_model *model;
+    const struct brc_specimen *specimen;
+    const char *dir; /* where results go; made when it is missing */
+    bool is_resumed; /* go on from dir/state.h5; from the start when the run has not saved one */
+    bool is_forced;  /* replace results that are there */
+    struct brc_progress *progress;
+    int progress_run; /* number of this run's line */
+};
+
+/* Runs to the end of the test. Writes to dir: case.yaml, log, state.h5, curve.csv, events.csv,
+ * broken.csv, summary.json, and the plots. A signal that was held (brc_run_hold_signals) saves the
+ * state and ends in BRC_ERR_INTERRUPTED, before the first step in BRC_ERR_NOT_BEGUN; curves are
+ * written after any failure of a started run. */
+int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out);
+
+/* dir/name in path; a longer one is BRC_ERR_INPUT. */
+int brc_run_path(struct brc_context *ctx, const char *dir, const char *name, char *path,
+                 size_t size);
+/* dir holds something of that name. */
+bool brc_run_has_file(const char *dir, const char *name);
+/* A run has been started in dir, by its log. */
+bool brc_run_has_begun(const char *dir);
+/* Fails when dir holds what the run would replace (results, a file of the same name of the user's
+ * own) and neither is_resumed nor is_forced allows it; when there is nothing to resume; and,
+ * whatever is allowed, when an input of the job lies where a result goes. BRC_ERR_INPUT,
+ * BRC_ERR_IO. */
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                         bool is_resumed, bool is_forced);
+/* The same for files of commands that run several: fails when dir holds one of n files, or the
+ * beginning of one (its name with .part), and may_replace is not set, or one is an input. */
+int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                      const char *const *names, int n, bool may_replace);
+/* Of the text of a kept case; the log tells it, as "case.yaml: digest ...". */
+uint64_t brc_run_case_digest(const char *text);
+/* Fails when this text must not replace dir/case.yaml: the case that is read, or for a resumed run
+ * one that it has not kept itself, by its log. */
+int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                       const char *text, bool is_resumed);
+/* Puts the text into dir/case.yaml. One that is there already stays, but for a new run's: to write
+ * it tells whether there is room, before old results are removed. */
+int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                      const char *text, bool is_new);
+/* Removes what runs write: all but case and log, and everything, with the folder when it is empty
+ * then. */
+int brc_run_remove_results(struct brc_context *ctx, const char *dir);
+int brc_run_remove(struct brc_context *ctx, const char *dir);
+/* From now on SIGINT, SIGTERM, SIGHUP, and the warnings of batch systems, SIGUSR1, SIGUSR2 and
+ * SIGXCPU, end the process at once, in words and with the status of an interruption: there is
+ * nothing to save yet. */
+void brc_run_leave_on_signals(void);
+/* From now on those signals and a lost reader wait: each run of the process saves its state and
+ * ends after the present step. */
+void brc_run_hold_signals(void);
+bool brc_run_is_stopped(void);
+/* Makes a folder and those above it. */
+int brc_run_make_folder(struct brc_context *ctx, const char *path);
+
+#endif

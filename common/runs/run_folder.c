@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The folder of a run: what may be written there. Nothing that the run did not write is replaced or
+ * removed without --force, and an input never. */
+#include "common/runs/run.h"
+
+#include "common/output/frames.h"
+#include "common/input/input_file.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096 };
+
+/* What a run writes beside case.yaml, log and frames. */
+static const char *const result_files[] = {
+    "summary.json", "state.h5",   "curve.csv", "events.csv",  "broken.csv", "curves.png",
+    "curves.gp",    "cracks.png", "cracks.gp", "cracks.plot", "gnuplot.log"};
+enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
+
+int brc_run_path(struct brc_context *ctx, const char *dir, const char *name, char *path,
+                 size_t size)
+{
+    if (snprintf(path, size, "%s/%s", dir, name) >= (int)size)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
+    return 0;
+}
+
+int brc_run_make_folder(struct brc_context *ctx, const char *path)
+{
+    char part[PATH_SIZE];
+    BRC_TRY(brc_run_path(ctx, path, "", part, sizeof part));
+    for (char *c = part + 1; *c; c++) {
+        if (*c != '/')
+            continue;
+        *c = '\0';
+        struct stat status;
+        if (mkdir(part, 0777) != 0 && errno != EEXIST)
+            BRC_FAIL(ctx, BRC_ERR_IO, "cannot make the folder %s: %s", part, strerror(errno));
+        if (stat(part, &status) == 0 && !S_ISDIR(status.st_mode))
+            BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a folder; choose another with -o", part);
+        *c = '/';
+    }
+    return 0;
+}
+
+/* The folder, or the nearest one above it that is there, must take files. */
+static int check_writable(struct brc_context *ctx, const char *dir)
+{
+    char path[PATH_SIZE];
+    struct stat status;
+    BRC_TRY(brc_run_path(ctx, dir, "", path, sizeof path));
+    while (stat(path, &status) != 0) {
+        char *slash = strrchr(path, '/');
+        if (slash == path || !slash)
+            snprintf(path, sizeof path, slash ? "/" : ".");
+        else
+            *slash = '\0';
+    }
+    if (!S_ISDIR(status.st_mode))
+        BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a folder; choose another with -o", path);
+    if (access(path, W_OK | X_OK) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write to the folder %s: %s; choose another with -o", path,
+                 strerror(errno));
+    return 0;
+}
+
+bool brc_run_has_file(const char *dir, const char *name)
+{
+    char path[PATH_SIZE];
+    struct stat status;
+    return snprintf(path, sizeof path, "%s/%s", dir, name) < PATH_SIZE && lstat(path, &status) == 0;
+}
+
+/* NULL when it is not there, or is not a plain file. */
+static FILE *open_plain(const char *path)
+{
+    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    FILE *file;
+    return brc_input_open(&quiet, &in, &file, NULL) == 0 ? file : NULL;
+}
+
+/* A run's log begins with the program's name; a run that was ended before its first line has left
+ * an empty one, which is worth nothing to anyone. */
+static bool read_log(const char *dir, bool *is_empty)
+{
+    char path[PATH_SIZE], begin[sizeof "breccia "] = "";
+    FILE *log = snprintf(path, sizeof path, "%s/log", dir) < PATH_SIZE ? open_plain(path) : NULL;
+    size_t n = log ? fread(begin, 1, sizeof begin - 1, log) : 0;
+    if (log)
+        fclose(log);
+    *is_empty = n == 0;
+    return log && (n == 0 || strcmp(begin, "breccia ") == 0);
+}
+
+bool brc_run_has_begun(const char *dir)
+{
+    bool is_empty;
+    return read_log(dir, &is_empty);
+}
+
+/* ---- what is in the way -------------------------------------------------------------------- */
+
+static int fail_occupied(struct brc_context *ctx, const char *dir, const char *name)
+{
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "%s already holds results (%s); go on with --resume, replace them with --force, or "
+             "choose another folder with -o",
+             dir, name);
+}
+
+static int check_absent(struct brc_context *ctx, const char *dir, const char *name)
+{
+    char part[256];
+    snprintf(part, sizeof part, "%s.part", name);
+    if (brc_run_has_file(dir, name))
+        return fail_occupied(ctx, dir, name);
+    return brc_run_has_file(dir, part) ? fail_occupied(ctx, dir, part) : 0;
+}
+
+static int check_input(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                       const char *name)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(brc_run_path(ctx, dir, name, path, sizeof path));
+    if (brc_job_is_input(job, path))
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "%s is an input of this run, which would replace it; choose another folder with -o",
+            path);
+    return 0;
+}
+
+int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                      const char *const *names, int n, bool may_replace)
+{
+    for (int i = 0; i < n; i++) {
+        BRC_TRY(check_input(ctx, dir, job, names[i]));
+        if (!may_replace)
+            BRC_TRY(check_absent(ctx, dir, names[i]));
+    }
+    return 0;
+}
+
+static int check_new(struct brc_context *ctx, const char *dir)
+{
+    char frame[256];
+    bool is_empty;
+    BRC_TRY(check_absent(ctx, dir, "case.yaml"));
+    read_log(dir, &is_empty);
+    if (brc_run_has_file(dir, "log") && !is_empty)
+        return fail_occupied(ctx, dir, "log");
+    return brc_frames_find(dir, frame, sizeof frame) ? fail_occupied(ctx, dir, frame) : 0;
+}
+
+/* A run that was ended before it has saved a state has no results but frames, and starts anew;
+ * where there are results, their state is lost. */
+static int check_resumed(struct brc_context *ctx, const char *dir)
+{
+    if (!brc_run_has_begun(dir))
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s holds no run to resume; leave out --resume", dir);
+    for (int i = 0; i < N_RESULT_FILES && !brc_run_has_file(dir, "state.h5"); i++)
+        if (brc_run_has_file(dir, result_files[i]))
+            BRC_FAIL(
+                ctx, BRC_ERR_INPUT,
+                "%s holds results (%s) but no state.h5 to go on from; start anew with --force, "
+                "or choose another folder with -o",
+                dir, result_files[i]);
+    return 0;
+}
+
+/* The kept case may be the one that is read: it is judged when it is written. */
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                         bool is_resumed, bool is_forced)
+{
+    BRC_TRY(check_writable(ctx, dir));
+    BRC_TRY(check_input(ctx, dir, job, "log"));
+    BRC_TRY(
+        brc_run_check_own(ctx, dir, job, result_files, N_RESULT_FILES, is_resumed || is_forced));
+    if (is_resumed)
+        return check_resumed(ctx, dir);
+    return is_forced ? 0 : check_new(ctx, dir);
+}
+
+/* ---- writing ------------------------------------------------------------------------------- */
+
+/* True when the file holds just this text. */
+static bool holds(const char *path, const char *text)
+{
+    FILE *file = open_plain(path);
+    size_t n = strlen(text);
+    char *found = file ? malloc(n + 1) : NULL;
+    bool is_same = found && fread(found, 1, n + 1, file) == n && memcmp(found, text, n) == 0;
+    free(found);
+    if (file)
+        fclose(file);
+    return is_same;
+}
+
+uint64_t brc_run_case_digest(const char *text)
+{
+    return brc_hash_bytes(text, strlen(text), BRC_HASH_SEED);
+}
+
+/* The log tells the digest of each case that the run has kept, before it is written. */
+static bool is_in_log(const char *dir, const char *path)
+{
+    char log[PATH_SIZE], line[1024], digest[32];
+    char *text = NULL;
+    size_t size = 0;
+    bool is_found = false;
+    FILE *file = open_plain(path);
+    if (!file || getdelim(&text, &size, '\0', file) < 0)
+        snprintf(digest, sizeof digest, "no digest");
+    else
+        snprintf(digest, sizeof digest, "digest %016" PRIx64, brc_run_case_digest(text));
+    free(text);
+    if (file)
+        fclose(file);
+    file = snprintf(log, sizeof log, "%s/log", dir) < PATH_SIZE ? open_plain(log) : NULL;
+    while (file && !is_found && fgets(line, sizeof line, file))
+        is_found = strncmp(line, "case.yaml: ", 11) == 0 && strstr(line, digest);
+    if (file)
+        fclose(file);
+    return is_found;
+}
+
+int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                       const char *text, bool is_resumed)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(brc_run_path(ctx, dir, "case.yaml", path, sizeof path));
+    if (holds(path, text) || (is_resumed && is_in_log(dir, path)))
+        return 0;
+    if (brc_job_is_input(job, path))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s is the case that is read, and the options of this run would change it; choose "
+                 "another folder with -o",
+                 path);
+    if (is_resumed && brc_run_has_file(dir, "case.yaml"))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s is not the case that the run has kept there; move it away, then resume", path);
+    return 0;
+}
+
+int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+                      const char *text, bool is_new)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(brc_run_path(ctx, dir, "case.yaml", path, sizeof path));
+    bool may_stay = !is_new || brc_job_is_input(job, path);
+    return may_stay && holds(path, text) ? 0 : brc_output_text(ctx, path, text);
+}
+
+int brc_run_remove_results(struct brc_context *ctx, const char *dir)
+{
+    char path[PATH_SIZE];
+    for (int i = 0; i < N_RESULT_FILES; i++) {
+        BRC_TRY(brc_run_path(ctx, dir, result_files[i], path, sizeof path));
+        if (unlink(path) != 0 && errno != ENOENT)
+            BRC_FAIL(ctx, BRC_ERR_IO, "cannot remove %s: %s", path, strerror(errno));
+    }
+    return brc_frames_remove(ctx, dir);
+}
+
+int brc_run_remove(struct brc_context *ctx, const char *dir)
+{
+    char path[PATH_SIZE];
+    BRC_TRY(brc_run_remove_results(ctx, dir));
+    for (int i = 0; i < 2; i++) {
+        BRC_TRY(brc_run_path(ctx, dir, i == 0 ? "case.yaml" : "log", path, sizeof path));
+        unlink(path);
+    }
+    rmdir(dir); /* stays when it holds what is not the run's */
+    return 0;
+}

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/specimen/complex.h"
+
+#include "common/base/grow.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE_IN = -1, SIDE_ON = 0, SIDE_OUT = 1 };
+enum { HAS_IN = 1, HAS_ON = 2, HAS_OUT = 4 };
+
+/* Directed edge of a cell in the clipping plane, or (cell = 0) a cut edge with from < to. */
+struct edge {
+    int32_t cell, from, to;
+};
+
+/* Work space of one clip. */
+struct clip {
+    struct brc_complex *c;
+    const struct brc_plane *plane;
+    size_t n_old;      /* vertices before the cut */
+    double *height;    /* [n_old] signed distance from the plane */
+    int8_t *side;      /* [n_old] */
+    uint8_t *is_hit;   /* [n_cells] the cell lost something */
+    uint8_t *is_alive; /* [n_cells] the cell keeps something */
+    uint8_t *state;    /* [n_facets] which sides the facet's vertices are on, see enum */
+    int32_t *work;     /* one loop under construction */
+    size_t cap_work;
+    struct edge *cut, *open;
+    size_t n_cut, cap_cut, n_open, cap_open;
+};
+
+void brc_complex_init(struct brc_complex *c, size_t n_cells)
+{
+    memset(c, 0, sizeof *c);
+    c->n_cells = n_cells;
+}
+
+void brc_complex_free(struct brc_complex *c)
+{
+    free(c->vertex);
+    free(c->facet);
+    free(c->loop);
+    brc_complex_init(c, 0);
+}
+
+int brc_complex_add_vertex(struct brc_context *ctx, struct brc_complex *c, const double x[3])
+{
+    if (c->n_vertices >= INT32_MAX)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "more than %d vertices; use fewer grains", INT32_MAX);
+    BRC_GROW(ctx, c->vertex, c->cap_vertices, c->n_vertices + 1);
+    brc_copy(c->vertex[c->n_vertices++], x);
+    return 0;
+}
+
+int brc_complex_add_facet(struct brc_context *ctx, struct brc_complex *c,
+                          const struct brc_complex_facet *facet, const int32_t *loop)
+{
+    if (facet->n < 3)
+        return 0;
+    size_t n = (size_t)facet->n;
+    BRC_GROW(ctx, c->facet, c->cap_facets, c->n_facets + 1);
+    BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + n);
+    memcpy(c->loop + c->n_loop, loop, n * sizeof *loop);
+    c->facet[c->n_facets] = *facet;
+    c->facet[c->n_facets++].first = c->n_loop;
+    c->n_loop += n;
+    return 0;
+}
+
+size_t brc_complex_empty_cells(const struct brc_complex *c, uint8_t *is_empty)
+{
+    size_t n = c->n_cells;
+    memset(is_empty, 1, c->n_cells);
+    for (size_t f = 0; f < c->n_facets; f++)
+        for (int k = 0; k < 2 && c->facet[f].n > 0; k++) {
+            int32_t cell = c->facet[f].cell[k];
+            if (cell >= 0 && is_empty[cell]) {
+                is_empty[cell] = 0;
+                n--;
+            }
+        }
+    return n;
+}
+
+static int clip_begin(struct brc_context *ctx, struct clip *w, double tolerance)
+{
+    struct brc_complex *c = w->c;
+    w->n_old = c->n_vertices;
+    w->height = brc_alloc(ctx, w->n_old, sizeof *w->height);
+    w->side = brc_alloc(ctx, w->n_old, sizeof *w->side);
+    w->is_hit = brc_alloc(ctx, c->n_cells, 1);
+    w->is_alive = brc_alloc(ctx, c->n_cells, 1);
+    w->state = brc_alloc(ctx, c->n_facets, 1);
+    if (!w->height || !w->side || !w->is_hit || !w->is_alive || !w->state)
+        return BRC_ERR_MEMORY;
+    for (size_t v = 0; v < w->n_old; v++) {
+        double h = brc_dot(w->plane->n, c->vertex[v]) - w->plane->d;
+        w->height[v] = h;
+        w->side[v] = h > tolerance ? SIDE_OUT : h < -tolerance ? SIDE_IN : SIDE_ON;
+    }
+    return 0;
+}
+
+static void clip_end(struct clip *w)
+{
+    free(w->height);
+    free(w->side);
+    free(w->is_hit);
+    free(w->is_alive);
+    free(w->state);
+    free(w->work);
+    free(w->cut);
+    free(w->open);
+}
+
+/* New vertices are on the plane. */
+static int side_of(const struct clip *w, int32_t v)
+{
+    return (size_t)v < w->n_old ? w->side[v] : SIDE_ON;
+}
+
+static int by_cell_and_ends(const void *a, const void *b)
+{
+    const struct edge *p = a, *q = b;
+    int32_t p_low = p->from < p->to ? p->from : p->to, p_high = p->from ^ p->to ^ p_low;
+    int32_t q_low = q->from < q->to ? q->from : q->to, q_high = q->from ^ q->to ^ q_low;
+    if (p->cell != q->cell)
+        return p->cell < q->cell ? -1 : 1;
+    if (p_low != q_low)
+        return p_low < q_low ? -1 : 1;
+    if (p_high != q_high)
+        return p_high < q_high ? -1 : 1;
+    return p->from < q->from ? -1 : p->from > q->from;
+}
+
+static int push_edge(struct brc_context *ctx, struct edge **list, size_t *n, size_t *cap,
+                     struct edge e)
+{
+    BRC_GROW(ctx, *list, *cap, *n + 1);
+    (*list)[(*n)++] = e;
+    return 0;
+}
+
+/* Finds the edges that cross the plane, marks the cells that lose or keep something, and removes
+ * the facets without a vertex inside. */
+static int find_cuts(struct brc_context *ctx, struct clip *w)
+{
+    struct brc_complex *c = w->c;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        struct brc_complex_facet *facet = &c->facet[f];
+        const int32_t *loop = c->loop + facet->first;
+        static const uint8_t state[3] = {HAS_IN, HAS_ON, HAS_OUT};
+        for (int32_t i = 0; i < facet->n; i++)
+            w->state[f] |= state[w->side[loop[i]] + 1];
+        bool has_in = w->state[f] & HAS_IN, has_out = w->state[f] & HAS_OUT;
+        for (int k = 0; k < 2 && facet->n > 0; k++)
+            if (facet->cell[k] >= 0) {
+                w->is_alive[facet->cell[k]] |= has_in;
+                w->is_hit[facet->cell[k]] |= has_out || !has_in;
+            }
+        if (!has_in)
+            facet->n = 0;
+        for (int32_t i = 0; i < facet->n && has_out; i++) {
+            int32_t u = loop[i], v = loop[i + 1 < facet->n ? i + 1 : 0];
+            struct edge e = {0, u < v ? u : v, u < v ? v : u};
+            if (w->side[u] * w->side[v] < 0)
+                BRC_TRY(push_edge(ctx, &w->cut, &w->n_cut, &w->cap_cut, e));
+        }
+    }
+    return 0;
+}
+
+/* One vertex for each cut edge; its number is n_old + position in the sorted list. */
+static int make_vertices(struct brc_context *ctx, struct clip *w)
+{
+    if (w->n_cut == 0)
+        return 0;
+    qsort(w->cut, w->n_cut, sizeof *w->cut, by_cell_and_ends);
+    size_t n = 1;
+    for (size_t i = 1; i < w->n_cut; i++)
+        if (by_cell_and_ends(&w->cut[i], &w->cut[n - 1]) != 0)
+            w->cut[n++] = w->cut[i];
+    w->n_cut = n;
+    for (size_t i = 0; i < n; i++) {
+        int32_t u = w->cut[i].from, v = w->cut[i].to;
+        double t = w->height[u] / (w->height[u] - w->height[v]), x[3], e[3];
+        brc_sub(e, w->c->vertex[v], w->c->vertex[u]);
+        brc_copy(x, w->c->vertex[u]);
+        brc_axpy(x, t, e);
+        BRC_TRY(brc_complex_add_vertex(ctx, w->c, x));
+    }
+    return 0;
+}
+
+static int32_t cut_vertex(const struct clip *w, int32_t u, int32_t v)
+{
+    struct edge key = {0, u < v ? u : v, u < v ? v : u};
+    const struct edge *hit = bsearch(&key, w->cut, w->n_cut, sizeof *w->cut, by_cell_and_ends);
+    return (int32_t)(w->n_old + (size_t)(hit - w->cut));
+}
+
+/* Replaces the loop of a facet by its part inside; the new loop lies at the end of the pool. */
+static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
+{
+    struct brc_complex *c = w->c;
+    int32_t n = c->facet[f].n, n_new = 0, n_leave = 0;
+    if (n == 0 || !(w->state[f] & HAS_OUT))
+        return 0;
+    BRC_GROW(ctx, w->work, w->cap_work, 2 * (size_t)n);
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t *loop = c->loop + c->facet[f].first;
+        int32_t u = loop[i], v = loop[i + 1 < n ? i + 1 : 0];
+        if (w->side[u] != SIDE_OUT)
+            w->work[n_new++] = u;
+        if (w->side[u] * w->side[v] < 0)
+            w->work[n_new++] = cut_vertex(w, u, v);
+        n_leave += w->side[u] != SIDE_OUT && w->side[v] == SIDE_OUT;
+    }
+    if (n_leave > 1)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "the facet between cells %d and %d is not convex where domain plane %d cuts it",
+                 c->facet[f].cell[0], c->facet[f].cell[1], w->plane->id);
+    BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + (size_t)n_new);
+    memcpy(c->loop + c->n_loop, w->work, (size_t)n_new * sizeof *w->work);
+    c->facet[f].first = c->n_loop;
+    c->facet[f].n = n_new;
+    c->n_loop += (size_t)n_new;
+    return 0;
+}
+
+/* Collects the edges in the plane of all facets of the cells that lost something. */
+static int find_open_edges(struct brc_context *ctx, struct clip *w)
+{
+    struct brc_complex *c = w->c;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        struct brc_complex_facet *facet = &c->facet[f];
+        const int32_t *loop = c->loop + facet->first;
+        for (int k = 0; k < 2 && (w->state[f] & (HAS_ON | HAS_OUT)); k++) {
+            int32_t cell = facet->cell[k];
+            if (cell < 0 || !w->is_hit[cell])
+                continue;
+            for (int32_t i = 0; i < facet->n; i++) {
+                int32_t u = loop[i], v = loop[i + 1 < facet->n ? i + 1 : 0];
+                struct edge e = {cell, k ? v : u, k ? u : v};
+                if (side_of(w, u) == SIDE_ON && side_of(w, v) == SIDE_ON)
+                    BRC_TRY(push_edge(ctx, &w->open, &w->n_open, &w->cap_open, e));
+            }
+        }
+    }
+    return 0;
+}
+
+/* Drops pairs of opposite edges: there the cell has a facet on both sides. */
+static void cancel_edges(struct clip *w)
+{
+    size_t n = 0;
+    qsort(w->open, w->n_open, sizeof *w->open, by_cell_and_ends);
+    for (size_t i = 0; i < w->n_open; i++) {
+        struct edge e = w->open[i];
+        const struct edge *last = n > 0 ? &w->open[n - 1] : NULL;
+        if (last && last->cell == e.cell && last->from == e.to && last->to == e.from)
+            n--;
+        else
+            w->open[n++] = e;
+    }
+    w->n_open = n;
+}
+
+/* Closes one cell: its n open edges, walked backwards, bound its new facets. */
+static int close_cell(struct brc_context *ctx, struct clip *w, struct edge *open, size_t n)
+{
+    struct brc_complex_facet facet = {{open->cell, -1}, w->plane->id, 0, 0, {0, 0, 0}};
+    brc_copy(facet.normal, w->plane->n);
+    BRC_GROW(ctx, w->work, w->cap_work, n);
+    while (n > 0) {
+        struct edge e = open[--n];
+        int32_t end = e.to;
+        facet.n = 0;
+        w->work[facet.n++] = e.to;
+        while (e.from != end) {
+            size_t i = 0;
+            while (i < n && open[i].to != e.from)
+                i++;
+            if (i == n)
+                BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "cell %d stays open where domain plane %d cuts it",
+                         e.cell, w->plane->id);
+            e = open[i];
+            open[i] = open[--n];
+            w->work[facet.n++] = e.to;
+        }
+        BRC_TRY(brc_complex_add_facet(ctx, w->c, &facet, w->work));
+    }
+    return 0;
+}
+
+static int close_cells(struct brc_context *ctx, struct clip *w)
+{
+    BRC_TRY(find_open_edges(ctx, w));
+    if (w->n_open == 0)
+        return 0;
+    cancel_edges(w);
+    for (size_t i = 0, end; i < w->n_open; i = end) {
+        for (end = i; end < w->n_open && w->open[end].cell == w->open[i].cell; end++)
+            continue;
+        if (w->is_alive[w->open[i].cell])
+            BRC_TRY(close_cell(ctx, w, w->open + i, end - i));
+    }
+    return 0;
+}
+
+static int clip_all(struct brc_context *ctx, struct clip *w, double tolerance)
+{
+    BRC_TRY(clip_begin(ctx, w, tolerance));
+    BRC_TRY(find_cuts(ctx, w));
+    BRC_TRY(make_vertices(ctx, w));
+    for (size_t f = 0; f < w->c->n_facets; f++)
+        BRC_TRY(clip_facet(ctx, w, f));
+    return close_cells(ctx, w);
+}
+
+int brc_complex_clip(struct brc_context *ctx, struct brc_complex *c, const struct brc_plane *plane,
+                     double tolerance)
+{
+    struct clip w = {.c = c, .plane = plane};
+    int code = clip_all(ctx, &w, tolerance);
+    clip_end(&w);
+    return code;
+}

@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The last steps of a complex: boundary vertices onto their planes, order, measures. */
+#include "common/specimen/complex.h"
+
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A plane on which a boundary vertex lies. */
+struct incidence {
+    int32_t vertex, plane;
+};
+
+/* Sort key of a facet. */
+struct key {
+    int32_t cell, is_boundary, other;
+    size_t facet;
+};
+
+static int by_vertex_and_plane(const void *a, const void *b)
+{
+    const struct incidence *p = a, *q = b;
+    if (p->vertex != q->vertex)
+        return p->vertex < q->vertex ? -1 : 1;
+    return p->plane < q->plane ? -1 : p->plane > q->plane;
+}
+
+/* Position in the domain's list of the plane with this id. */
+static size_t find_plane(const struct brc_convex *domain, int32_t id)
+{
+    size_t i = 0;
+    while (i < domain->n_faces && domain->plane[i].id != id)
+        i++;
+    return i;
+}
+
+/* Moves x onto n planes, one after the other, each time along the planes that came before. A plane
+ * that (nearly) follows from these is met already. */
+static void move_onto(double x[3], const struct brc_convex *domain, const struct incidence *list,
+                      size_t n)
+{
+    double done[3][3];
+    int n_done = 0;
+    for (size_t i = 0; i < n && n_done < 3; i++) {
+        const struct brc_plane *p = &domain->plane[list[i].plane];
+        double q[3];
+        brc_copy(q, p->n);
+        for (int k = 0; k < n_done; k++)
+            brc_axpy(q, -brc_dot(q, done[k]), done[k]);
+        if (brc_normalise(q, q) < 1e-6)
+            continue;
+        brc_axpy(x, (p->d - brc_dot(p->n, x)) / brc_dot(p->n, q), q);
+        brc_copy(done[n_done++], q);
+    }
+}
+
+int brc_complex_settle(struct brc_context *ctx, struct brc_complex *c,
+                       const struct brc_convex *domain)
+{
+    size_t n = 0;
+    for (size_t f = 0; f < c->n_facets; f++)
+        n += c->facet[f].face >= 0 ? (size_t)c->facet[f].n : 0;
+    struct incidence *list = brc_alloc(ctx, n, sizeof *list);
+    if (!list)
+        return BRC_ERR_MEMORY;
+    n = 0;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        if (c->facet[f].face < 0)
+            continue;
+        int32_t plane = (int32_t)find_plane(domain, c->facet[f].face);
+        for (int32_t i = 0; i < c->facet[f].n; i++)
+            list[n++] = (struct incidence){c->loop[c->facet[f].first + (size_t)i], plane};
+    }
+    qsort(list, n, sizeof *list, by_vertex_and_plane);
+    for (size_t i = 0, end; i < n; i = end) {
+        size_t m = 1;
+        for (end = i + 1; end < n && list[end].vertex == list[i].vertex; end++)
+            if (list[end].plane != list[i + m - 1].plane)
+                list[i + m++] = list[end];
+        move_onto(c->vertex[list[i].vertex], domain, list + i, m);
+    }
+    free(list);
+    return 0;
+}
+
+static int by_key(const void *a, const void *b)
+{
+    const struct key *p = a, *q = b;
+    if (p->cell != q->cell)
+        return p->cell < q->cell ? -1 : 1;
+    if (p->is_boundary != q->is_boundary)
+        return p->is_boundary < q->is_boundary ? -1 : 1;
+    if (p->other != q->other)
+        return p->other < q->other ? -1 : 1;
+    return p->facet < q->facet ? -1 : p->facet > q->facet;
+}
+
+/* Order of the facets: cell, then inner ones by neighbour, then boundary ones by face. */
+static int sort_facets(struct brc_context *ctx, const struct brc_complex *c, struct key *keys,
+                       size_t *n_keys)
+{
+    size_t n = 0;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        const struct brc_complex_facet *facet = &c->facet[f];
+        if (facet->n == 0)
+            continue;
+        if (facet->face == BRC_FACE_OPEN)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "cell %d is not bounded by the domain", facet->cell[0]);
+        bool is_boundary = facet->cell[1] < 0;
+        keys[n++] = (struct key){facet->cell[0], is_boundary,
+                                 is_boundary ? facet->face : facet->cell[1], f};
+    }
+    qsort(keys, n, sizeof *keys, by_key);
+    for (size_t i = 1; i < n; i++)
+        if (keys[i].cell == keys[i - 1].cell && keys[i].is_boundary == keys[i - 1].is_boundary &&
+            keys[i].other == keys[i - 1].other)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "cell %d has two facets towards %s %d", keys[i].cell,
+                     keys[i].is_boundary ? "boundary face" : "cell", keys[i].other);
+    *n_keys = n;
+    return 0;
+}
+
+static int allocate(struct brc_context *ctx, const struct brc_complex *c, size_t n,
+                    struct brc_facets *out)
+{
+    size_t n_loop = 0;
+    for (size_t f = 0; f < c->n_facets; f++)
+        n_loop += (size_t)c->facet[f].n;
+    out->n_cells = c->n_cells;
+    out->n_facets = n;
+    out->volume = brc_alloc(ctx, c->n_cells, sizeof *out->volume);
+    out->centre = brc_alloc(ctx, c->n_cells, sizeof *out->centre);
+    out->cell_first = brc_alloc(ctx, c->n_cells + 1, sizeof *out->cell_first);
+    out->cell_facet = brc_alloc(ctx, 2 * n, sizeof *out->cell_facet);
+    out->cell = brc_alloc(ctx, n, sizeof *out->cell);
+    out->face = brc_alloc(ctx, n, sizeof *out->face);
+    out->is_contact = brc_alloc(ctx, n, sizeof *out->is_contact);
+    out->area = brc_alloc(ctx, n, sizeof *out->area);
+    out->centroid = brc_alloc(ctx, n, sizeof *out->centroid);
+    out->normal = brc_alloc(ctx, n, sizeof *out->normal);
+    out->first = brc_alloc(ctx, n + 1, sizeof *out->first);
+    out->loop = brc_alloc(ctx, n_loop, sizeof *out->loop);
+    out->vertex = brc_alloc(ctx, c->n_vertices, sizeof *out->vertex);
+    bool is_complete = out->volume && out->centre && out->cell_first && out->cell_facet &&
+                       out->cell && out->face && out->is_contact && out->area && out->centroid &&
+                       out->normal && out->first && out->loop && out->vertex;
+    return is_complete ? 0 : BRC_ERR_MEMORY;
+}
+
+/* Copies the facets in order; vertices are numbered as they come. number is all -1. */
+static void copy_facets(const struct brc_complex *c, const struct key *keys, int32_t *number,
+                        struct brc_facets *out)
+{
+    out->n_vertices = 0;
+    for (size_t f = 0; f < out->n_facets; f++) {
+        const struct brc_complex_facet *from = &c->facet[keys[f].facet];
+        out->cell[f][0] = from->cell[0];
+        out->cell[f][1] = from->cell[1];
+        out->face[f] = from->cell[1] < 0 ? from->face : -1;
+        out->is_contact[f] = 1;
+        brc_copy(out->normal[f], from->normal);
+        out->first[f + 1] = out->first[f] + (size_t)from->n;
+        for (size_t i = 0; i < (size_t)from->n; i++) {
+            int32_t v = c->loop[from->first + i];
+            if (number[v] < 0) {
+                number[v] = (int32_t)out->n_vertices;
+                brc_copy(out->vertex[out->n_vertices++], c->vertex[v]);
+            }
+            out->loop[out->first[f] + i] = number[v];
+        }
+        out->area[f] = brc_polygon_area(out->vertex, out->loop + out->first[f], (size_t)from->n,
+                                        out->normal[f], out->centroid[f]);
+    }
+}
+
+/* Facets of each cell in ascending order. */
+static void list_cells(struct brc_facets *out)
+{
+    for (size_t f = 0; f < out->n_facets; f++)
+        for (int k = 0; k < 2; k++)
+            if (out->cell[f][k] >= 0)
+                out->cell_first[out->cell[f][k] + 1]++;
+    for (size_t i = 0; i < out->n_cells; i++)
+        out->cell_first[i + 1] += out->cell_first[i];
+    for (size_t f = 0; f < out->n_facets; f++)
+        for (int k = 0; k < 2; k++)
+            if (out->cell[f][k] >= 0)
+                out->cell_facet[out->cell_first[out->cell[f][k]]++] = (int32_t)f;
+    for (size_t i = out->n_cells; i > 0; i--)
+        out->cell_first[i] = out->cell_first[i - 1];
+    out->cell_first[0] = 0;
+}
+
+/* Volume and centroid from cones of the facets' triangles over the seed. Both cells of a facet see
+ * the same triangles, so the volumes sum to the domain. */
+static void measure_cell(struct brc_facets *out, size_t cell)
+{
+    double volume = 0, moment[3] = {0, 0, 0};
+    for (size_t k = out->cell_first[cell]; k < out->cell_first[cell + 1]; k++) {
+        size_t f = (size_t)out->cell_facet[k];
+        double sign = out->cell[f][0] == (int32_t)cell ? 1 : -1;
+        for (size_t i = out->first[f] + 1; i + 1 < out->first[f + 1]; i++) {
+            double p[3], q[3], r[3], cross[3];
+            brc_sub(p, out->vertex[out->loop[out->first[f]]], out->seed[cell]);
+            brc_sub(q, out->vertex[out->loop[i]], out->seed[cell]);
+            brc_sub(r, out->vertex[out->loop[i + 1]], out->seed[cell]);
+            brc_cross(cross, q, r);
+            double v = sign * brc_dot(p, cross) / 6;
+            volume += v;
+            brc_axpy(moment, v / 4, p);
+            brc_axpy(moment, v / 4, q);
+            brc_axpy(moment, v / 4, r);
+        }
+    }
+    out->volume[cell] = volume;
+    brc_copy(out->centre[cell], out->seed[cell]);
+    if (volume > 0)
+        brc_axpy(out->centre[cell], 1 / volume, moment);
+}
+
+int brc_complex_finish(struct brc_context *ctx, struct brc_complex *c, struct brc_facets *out)
+{
+    size_t n = 0;
+    struct key *keys = brc_alloc(ctx, c->n_facets, sizeof *keys);
+    int32_t *number = brc_alloc(ctx, c->n_vertices, sizeof *number);
+    int code = keys && number ? 0 : BRC_ERR_MEMORY;
+    if (code == 0)
+        code = sort_facets(ctx, c, keys, &n);
+    if (code == 0)
+        code = allocate(ctx, c, n, out);
+    if (code == 0) {
+        memset(number, 0xff, c->n_vertices * sizeof *number);
+        copy_facets(c, keys, number, out);
+        list_cells(out);
+        for (size_t i = 0; i < out->n_cells; i++)
+            measure_cell(out, i);
+    }
+    free(keys);
+    free(number);
+    return code;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cores of cells: the part of a cell that is farther than a radius from all its facets. Facets of a
+ * cell in one plane (lamellae, tessellations of two scales) are one face of the core. Used by the
+ * polyhedra model and by the first guess of its stiffnesses. */
+#ifndef BRC_EROSION_H
+#define BRC_EROSION_H
+
+#include "common/specimen/facets.h"
+
+/* Work space, kept from cell to cell; zero before the first use. */
+struct brc_erosion {
+    const struct brc_facets *facets;
+    size_t index, n;         /* the cell, and the number of its facets */
+    struct brc_convex cell;  /* the whole cell */
+    struct brc_convex core;  /* what is left of it; no faces when nothing is */
+    struct brc_plane *plane; /* [n] of the cell, outward */
+    struct brc_plane *moved; /* [n] work: one plane a face of the core */
+    int32_t *leader;         /* [n] the first and largest of the facets in this one's plane */
+    int32_t *share;          /* [n] number of facets in the plane that this one leads */
+    double (*polygon)[3];    /* work */
+    size_t cap, cap_polygon;
+};
+
+void brc_erosion_free(struct brc_erosion *e);
+/* Takes a cell up: its body, and which of its facets lie in one plane. */
+int brc_erosion_begin(struct brc_context *ctx, struct brc_erosion *e, const struct brc_facets *f,
+                      size_t cell);
+/* The core for a radius; a face's id is the number of the facet that leads its plane. centre is a
+ * point inside the cell. */
+int brc_erosion_core(struct brc_context *ctx, struct brc_erosion *e, double radius,
+                     const double centre[3]);
+/* *area [m2]: the part of the core's face that lies over the cell's k-th facet; 0 where erosion has
+ * removed the face. The facets of one plane share its face without gaps. */
+int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, double *area);
+/* Radius of the largest sphere inside the cell, known to be below high [m]. */
+double brc_erosion_inscribed(struct brc_erosion *e, double high);
+
+#endif

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/specimen/facets.h"
+
+#include "common/base/fields.h"
+#include "common/base/grow.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Limits of brc_facets_verify, relative to the cell or the domain. They are far above rounding and
+ * far below any real fault. Cells of a file fail them by what its digits leave open: this many
+ * units of the last digit, more on the plane of a facet that is small. */
+static const double closure_limit = 1e-8;
+static const double convexity_limit = 1e-6;
+static const double volume_limit = 1e-12;
+static const double digits_margin = 8;
+
+struct edge {
+    int32_t low, high, direction;
+};
+
+struct edges {
+    struct edge *list;
+    size_t n, cap;
+};
+
+void brc_facets_free(struct brc_facets *f)
+{
+    free(f->volume);
+    free(f->centre);
+    free(f->seed);
+    free(f->radius);
+    free(f->cell_first);
+    free(f->cell_facet);
+    free(f->cell);
+    free(f->face);
+    free(f->is_contact);
+    free(f->area);
+    free(f->centroid);
+    free(f->normal);
+    free(f->first);
+    free(f->loop);
+    free(f->vertex);
+    memset(f, 0, sizeof *f);
+}
+
+/* |sum A n| / sum A over the facets of a cell. */
+static double cell_closure(const struct brc_facets *f, size_t cell)
+{
+    double sum[3] = {0, 0, 0}, total = 0;
+    for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++) {
+        int32_t facet = f->cell_facet[k];
+        double sign = f->cell[facet][0] == (int32_t)cell ? 1 : -1;
+        brc_axpy(sum, sign * f->area[facet], f->normal[facet]);
+        total += f->area[facet];
+    }
+    return total > 0 ? brc_norm(sum) / total : 1;
+}
+
+void brc_facets_check(const struct brc_facets *f, double domain_volume,
+                      struct brc_facets_quality *quality)
+{
+    double sum = 0, rest = 0; /* compensated sum */
+    *quality = (struct brc_facets_quality){0, 0, INFINITY, INFINITY};
+    for (size_t i = 0; i < f->n_cells; i++) {
+        double term = f->volume[i] - rest, next = sum + term;
+        rest = (next - sum) - term;
+        sum = next;
+        quality->closure_error = fmax(quality->closure_error, cell_closure(f, i));
+        quality->smallest_volume = fmin(quality->smallest_volume, f->volume[i]);
+    }
+    for (size_t i = 0; i < f->n_facets; i++)
+        quality->smallest_area = fmin(quality->smallest_area, f->area[i]);
+    quality->volume_error = fabs(sum / domain_volume - 1);
+}
+
+void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio)
+{
+    double total = 0;
+    size_t n = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0) {
+            total += f->area[i];
+            n++;
+        }
+    double limit = n > 0 ? min_area_ratio * total / (double)n : 0;
+    f->area_dropped = 0;
+    for (size_t i = 0; i < f->n_facets; i++) {
+        f->is_contact[i] = f->cell[i][1] < 0 || f->area[i] >= limit;
+        if (!f->is_contact[i])
+            f->area_dropped += f->area[i];
+    }
+}
+
+double brc_facets_width(const struct brc_facets *f, size_t facet)
+{
+    double perimeter = 0;
+    for (size_t i = f->first[facet]; i < f->first[facet + 1]; i++) {
+        size_t j = i + 1 < f->first[facet + 1] ? i + 1 : f->first[facet];
+        double side[3];
+        brc_sub(side, f->vertex[f->loop[j]], f->vertex[f->loop[i]]);
+        perimeter += brc_norm(side);
+    }
+    return 2 * f->area[facet] / perimeter;
+}
+
+void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_plane *planes)
+{
+    for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++) {
+        int32_t facet = f->cell_facet[k];
+        struct brc_plane *p = planes + (k - f->cell_first[cell]);
+        brc_scale(p->n, f->normal[facet], f->cell[facet][0] == (int32_t)cell ? 1 : -1);
+        p->d = brc_dot(p->n, f->centroid[facet]);
+        p->id = facet;
+    }
+}
+
+/* Number of vertex v among the first n of list, added when it is new. */
+static int32_t local_number(int32_t *list, size_t *n, int32_t v)
+{
+    for (size_t i = 0; i < *n; i++)
+        if (list[i] == v)
+            return (int32_t)i;
+    list[*n] = v;
+    return (int32_t)(*n)++;
+}
+
+int brc_facets_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
+                    struct brc_convex *c)
+{
+    size_t n_faces = f->cell_first[cell + 1] - f->cell_first[cell], n_loop = 0;
+    for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++)
+        n_loop += f->first[f->cell_facet[k] + 1] - f->first[f->cell_facet[k]];
+    BRC_TRY(brc_convex_reserve(ctx, c, n_loop, n_faces, n_loop));
+    int32_t *list = brc_alloc(ctx, n_loop, sizeof *list);
+    if (!list)
+        return BRC_ERR_MEMORY;
+    brc_facets_cell_planes(f, cell, c->plane);
+    c->n_vertices = 0;
+    c->n_faces = n_faces;
+    c->first[0] = 0;
+    for (size_t k = 0; k < n_faces; k++) {
+        int32_t facet = f->cell_facet[f->cell_first[cell] + k];
+        size_t first = f->first[facet], n = f->first[facet + 1] - first;
+        bool reverse = f->cell[facet][0] != (int32_t)cell;
+        for (size_t i = 0; i < n; i++)
+            c->loop[c->first[k] + i] =
+                local_number(list, &c->n_vertices, f->loop[first + (reverse ? n - 1 - i : i)]);
+        c->first[k + 1] = c->first[k] + n;
+    }
+    for (size_t v = 0; v < c->n_vertices; v++)
+        brc_copy(c->vertex[v], f->vertex[list[v]]);
+    free(list);
+    return 0;
+}
+
+static int by_ends(const void *a, const void *b)
+{
+    const struct edge *p = a, *q = b;
+    if (p->low != q->low)
+        return p->low < q->low ? -1 : 1;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return p->direction < q->direction ? -1 : p->direction > q->direction;
+}
+
+static int collect_edges(struct brc_context *ctx, const struct brc_convex *c, struct edges *edges)
+{
+    edges->n = 0;
+    BRC_GROW(ctx, edges->list, edges->cap, c->first[c->n_faces]);
+    for (size_t k = 0; k < c->n_faces; k++)
+        for (size_t i = c->first[k]; i < c->first[k + 1]; i++) {
+            int32_t u = c->loop[i], v = c->loop[i + 1 < c->first[k + 1] ? i + 1 : c->first[k]];
+            edges->list[edges->n++] = (struct edge){u < v ? u : v, u < v ? v : u, u < v};
+        }
+    qsort(edges->list, edges->n, sizeof *edges->list, by_ends);
+    return 0;
+}
+
+/* Each edge once in each direction, and Euler's formula. */
+static bool is_closed(const struct brc_convex *c, const struct edges *edges)
+{
+    if (edges->n % 2 != 0 || c->n_vertices + c->n_faces != edges->n / 2 + 2)
+        return false;
+    for (size_t i = 0; i < edges->n; i += 2) {
+        const struct edge *p = &edges->list[i], *q = p + 1;
+        bool is_pair = p->low == q->low && p->high == q->high && p->direction != q->direction;
+        bool is_new = i == 0 || p[-1].low != p->low || p[-1].high != p->high;
+        if (!is_pair || !is_new)
+            return false;
+    }
+    return true;
+}
+
+static bool is_convex(const struct brc_facets *f, const struct brc_convex *c, double size)
+{
+    for (size_t k = 0; k < c->n_faces; k++) {
+        double width = brc_facets_width(f, (size_t)c->plane[k].id);
+        double blur = digits_margin * f->precision * (1 + size / width);
+        double limit = c->plane[k].d + fmax(convexity_limit * size, blur);
+        for (size_t v = 0; v < c->n_vertices; v++)
+            if (brc_dot(c->plane[k].n, c->vertex[v]) > limit)
+                return false;
+    }
+    return true;
+}
+
+static bool has_reversed_facet(const struct brc_facets *f, size_t cell)
+{
+    for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++)
+        if (!(f->area[f->cell_facet[k]] > 0))
+            return true;
+    return false;
+}
+
+static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
+                       const double origin[3], struct brc_convex *c, struct edges *edges)
+{
+    BRC_TRY(brc_facets_cell(ctx, f, cell, c));
+    BRC_TRY(collect_edges(ctx, c, edges));
+    const char *fault = NULL;
+    double closure = cell_closure(f, cell), size = cbrt(f->volume[cell]);
+    if (!(f->volume[cell] > 0))
+        fault = "has no volume";
+    else if (!is_closed(c, edges))
+        fault = "is not a closed body: an edge has not exactly two facets";
+    else if (!(closure <= fmax(closure_limit, digits_margin * f->precision / size)))
+        fault = "is not closed: its facets' areas do not balance";
+    else if (has_reversed_facet(f, cell))
+        fault = "has a facet turned inside out";
+    else if (!is_convex(f, c, size))
+        fault = "is not convex";
+    double seed[3];
+    brc_add(seed, f->seed[cell], origin);
+    if (fault)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "cell %zu of the seed at (%g, %g, %g) %s (volume %g m3, closure error %g); move "
+                 "seeds that nearly coincide or are nearly regular",
+                 cell, seed[0], seed[1], seed[2], fault, f->volume[cell], closure);
+    return 0;
+}
+
+int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
+                      const double origin[3])
+{
+    struct brc_convex c;
+    struct edges edges = {NULL, 0, 0};
+    struct brc_facets_quality quality;
+    int code = 0;
+    brc_convex_init(&c);
+    for (size_t i = 0; i < f->n_cells && code == 0; i++)
+        code = verify_cell(ctx, f, i, origin, &c, &edges);
+    brc_convex_free(&c);
+    free(edges.list);
+    BRC_TRY(code);
+    brc_facets_check(f, domain_volume, &quality);
+    if (!(quality.volume_error <= volume_limit))
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "the cells' volumes sum to %.3g of the domain's volume too much or too little",
+                 quality.volume_error);
+    return 0;
+}
+
+static void shift(double (*x)[3], size_t n, const double by[3])
+{
+    for (size_t i = 0; i < n; i++)
+        brc_add(x[i], x[i], by);
+}
+
+void brc_facets_shift(struct brc_facets *f, const double by[3])
+{
+    shift(f->vertex, f->n_vertices, by);
+    shift(f->centroid, f->n_facets, by);
+    shift(f->centre, f->n_cells, by);
+    shift(f->seed, f->n_cells, by);
+}
+
+uint64_t brc_facets_hash(const struct brc_facets *f)
+{
+    const size_t n[4] = {f->n_cells, f->n_facets, f->n_vertices, f->first[f->n_facets]};
+    uint64_t hash = brc_hash_bytes(n, sizeof n, BRC_HASH_SEED);
+    hash = brc_hash_bytes(f->seed, f->n_cells * sizeof *f->seed, hash);
+    hash = brc_hash_bytes(f->radius, f->n_cells * sizeof *f->radius, hash);
+    hash = brc_hash_bytes(f->cell, f->n_facets * sizeof *f->cell, hash);
+    hash = brc_hash_bytes(f->is_contact, f->n_facets * sizeof *f->is_contact, hash);
+    hash = brc_hash_bytes(f->loop, f->first[f->n_facets] * sizeof *f->loop, hash);
+    return brc_hash_bytes(f->vertex, f->n_vertices * sizeof *f->vertex, hash);
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The tessellation result: closed cells and the polygons between them. Immutable once made; both
+ * models read the same facets. A facet is stored once and seen from both cells. */
+#ifndef BRC_FACETS_H
+#define BRC_FACETS_H
+
+#include "common/geometry/convex.h"
+
+struct brc_facets {
+    /* cells, numbered along a space-filling order */
+    size_t n_cells;
+    double *volume;      /* [n_cells] m3 */
+    double (*centre)[3]; /* [n_cells] m, centroid of the cell */
+    double (*seed)[3];   /* [n_cells] m, Voronoi seed or centre of the sphere */
+    double *radius;      /* [n_cells] m, sphere radius (Laguerre weight r^2); 0 for plain Voronoi */
+    size_t *cell_first;  /* [n_cells + 1] */
+    int32_t *cell_facet; /* facets of a cell, ascending */
+    /* facets, sorted by (low cell, high cell), boundary facets of a cell after its inner ones */
+    size_t n_facets;
+    int32_t (*cell)[2];    /* [n_facets] low and high cell; [1] = -1 on the boundary */
+    int32_t *face;         /* [n_facets] domain plane id on the boundary, -1 inside */
+    uint8_t *is_contact;   /* [n_facets] 0: inner facet below the area limit, which closes its cells
+                              but carries no contact; 1: every other facet */
+    double *area;          /* [n_facets] m2 */
+    double (*centroid)[3]; /* [n_facets] m */
+    double (*normal)[3];   /* [n_facets] unit, out of cell[0] */
+    size_t *first;         /* [n_facets + 1] range in loop */
+    int32_t *loop;         /* vertex ids, counter-clockwise seen against the normal's tip */
+    /* vertices, shared by all facets and cells that meet there */
+    size_t n_vertices;
+    double (*vertex)[3]; /* [n_vertices] m */
+    double area_dropped; /* m2, total area of the facets that are no contacts */
+    double precision; /* m, last digit of the vertices in the file that they stem from; 0: none */
+};
+
+void brc_facets_free(struct brc_facets *f);
+/* Largest |volume sum / domain volume - 1|, |sum A n| / sum A over a cell: the closure check. */
+struct brc_facets_quality {
+    double volume_error;  /* relative */
+    double closure_error; /* largest over the cells, relative to the cell's area */
+    double smallest_volume, smallest_area;
+};
+void brc_facets_check(const struct brc_facets *f, double domain_volume,
+                      struct brc_facets_quality *quality);
+/* The check that nothing leaves unseen: every cell is a closed convex body (each edge once in each
+ * direction, Euler's formula, volume above zero, closure), and the volumes sum to the domain. An
+ * error names the cell, and its place with `origin` added. */
+int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
+                      const double origin[3]);
+/* Moves all places. */
+void brc_facets_shift(struct brc_facets *f, const double by[3]);
+/* Sets is_contact and area_dropped for a limit of min_area_ratio times the mean inner area. */
+void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio);
+/* m, twice the area over the perimeter: what a facet is wide where it is narrow. */
+double brc_facets_width(const struct brc_facets *f, size_t facet);
+/* Planes of a cell's facets, outward, id = facet; n = cell_first[c+1] - cell_first[c]. */
+void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_plane *planes);
+/* The cell as a convex polyhedron with the shared vertices; face ids are facet numbers. */
+int brc_facets_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
+                    struct brc_convex *c);
+
+/* Hash of seeds, cells, facets and vertices: equal specimens have equal ones. */
+uint64_t brc_facets_hash(const struct brc_facets *f);
+
+#endif

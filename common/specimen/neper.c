@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/specimen/neper.h"
+
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LABEL_SIZE = 64 };
+
+/* An edge between two vertices, with a facet (or a face of the domain) that it bounds. */
+struct edge {
+    int32_t low, high, face;
+};
+
+/* Edges of a body of polygons: all sides sorted, and each edge once with the first of its sides. */
+struct edges {
+    size_t n_sides, n;
+    struct edge *side;
+    size_t *first; /* [n + 1] range of an edge in side */
+};
+
+static int by_ends(const void *a, const void *b)
+{
+    const struct edge *p = a, *q = b;
+    if (p->low != q->low)
+        return p->low < q->low ? -1 : 1;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return p->face < q->face ? -1 : p->face > q->face;
+}
+
+static bool is_same(const struct edge *a, const struct edge *b)
+{
+    return a->low == b->low && a->high == b->high;
+}
+
+/* first and loop as in struct brc_facets and struct brc_convex. */
+static int find_edges(struct brc_context *ctx, size_t n_faces, const size_t *first,
+                      const int32_t *loop, struct edges *e)
+{
+    size_t n = first[n_faces];
+    *e = (struct edges){.side = brc_alloc(ctx, n, sizeof *e->side),
+                        .first = brc_alloc(ctx, n + 1, sizeof *e->first)};
+    if (!e->side || !e->first)
+        return BRC_ERR_MEMORY;
+    for (size_t f = 0; f < n_faces; f++)
+        for (size_t i = first[f]; i < first[f + 1]; i++) {
+            int32_t u = loop[i], v = loop[i + 1 < first[f + 1] ? i + 1 : first[f]];
+            e->side[e->n_sides++] = (struct edge){u < v ? u : v, u < v ? v : u, (int32_t)f};
+        }
+    qsort(e->side, n, sizeof *e->side, by_ends);
+    for (size_t i = 0; i < n; i++)
+        if (i == 0 || !is_same(&e->side[i], &e->side[i - 1]))
+            e->first[e->n++] = i;
+    e->first[e->n] = n;
+    return 0;
+}
+
+static void free_edges(struct edges *e)
+{
+    free(e->side);
+    free(e->first);
+}
+
+/* Signed number of the edge from u to v, from 1 on; positive from the low end to the high one. */
+static int64_t edge_number(const struct edges *e, int32_t u, int32_t v)
+{
+    const struct edge key = {u < v ? u : v, u < v ? v : u, 0};
+    size_t low = 0, high = e->n;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        const struct edge *at = &e->side[e->first[middle]];
+        bool is_after = at->low > key.low || (at->low == key.low && at->high > key.high);
+        if (is_after)
+            high = middle;
+        else
+            low = middle;
+    }
+    return u < v ? (int64_t)low + 1 : -(int64_t)low - 1;
+}
+
+struct writer {
+    FILE *out;
+    const struct brc_specimen *s;
+    struct edges edges, domain_edges;
+    int32_t (*pair)[2]; /* [edges.n] faces of the domain that meet in an edge, -1: inside */
+};
+
+/* ---- cells --------------------------------------------------------------------------------- */
+
+static void put_point(FILE *out, const double x[3])
+{
+    fprintf(out, " %.17g %.17g %.17g", x[0], x[1], x[2]);
+}
+
+static void put_cells(const struct writer *w)
+{
+    const struct brc_facets *f = &w->s->facets;
+    fprintf(w->out, " **cell\n  %zu\n  *seed\n", f->n_cells);
+    for (size_t i = 0; i < f->n_cells; i++) {
+        fprintf(w->out, "  %zu", i + 1);
+        put_point(w->out, f->seed[i]);
+        fprintf(w->out, " %.17g\n", f->radius[i]);
+    }
+    fprintf(w->out, " **vertex\n %zu\n", f->n_vertices);
+    for (size_t v = 0; v < f->n_vertices; v++) {
+        fprintf(w->out, "  %zu", v + 1);
+        put_point(w->out, f->vertex[v]);
+        fputs(" 0\n", w->out);
+    }
+    fprintf(w->out, " **edge\n %zu\n", w->edges.n);
+    for (size_t i = 0; i < w->edges.n; i++) {
+        const struct edge *e = &w->edges.side[w->edges.first[i]];
+        fprintf(w->out, "  %zu %d %d 0\n", i + 1, e->low + 1, e->high + 1);
+    }
+}
+
+/* "4 1 2 3 4" of the vertices of a polygon and of its edges. */
+static void put_loop(FILE *out, const struct edges *e, const int32_t *loop, size_t n,
+                     bool is_signed)
+{
+    fprintf(out, " %zu", n);
+    for (size_t i = 0; i < n; i++)
+        fprintf(out, " %d", loop[i] + 1);
+    fprintf(out, "\n    %zu", n);
+    for (size_t i = 0; i < n; i++) {
+        long long number = (long long)edge_number(e, loop[i], loop[i + 1 < n ? i + 1 : 0]);
+        fprintf(out, " %lld", is_signed || number > 0 ? number : -number);
+    }
+    fputc('\n', out);
+}
+
+static void put_faces(const struct writer *w)
+{
+    const struct brc_facets *f = &w->s->facets;
+    fprintf(w->out, " **face\n %zu\n", f->n_facets);
+    for (size_t i = 0; i < f->n_facets; i++) {
+        fprintf(w->out, "  %zu", i + 1);
+        put_loop(w->out, &w->edges, f->loop + f->first[i], f->first[i + 1] - f->first[i], true);
+        fprintf(w->out, "    %.17g", brc_dot(f->normal[i], f->centroid[i]));
+        put_point(w->out, f->normal[i]);
+        fputs("\n    0 0 0 0 0\n", w->out);
+    }
+    fprintf(w->out, " **polyhedron\n %zu\n", f->n_cells);
+    for (size_t c = 0; c < f->n_cells; c++) {
+        fprintf(w->out, "  %zu %zu", c + 1, f->cell_first[c + 1] - f->cell_first[c]);
+        for (size_t k = f->cell_first[c]; k < f->cell_first[c + 1]; k++) {
+            int32_t facet = f->cell_facet[k];
+            fprintf(w->out, " %d", f->cell[facet][0] == (int32_t)c ? facet + 1 : -facet - 1);
+        }
+        fputc('\n', w->out);
+    }
+}
+
+/* ---- domain -------------------------------------------------------------------------------- */
+
+static size_t domain_face(const struct brc_convex *d, int32_t id)
+{
+    size_t i = 0;
+    while (i < d->n_faces && d->plane[i].id != id)
+        i++;
+    return i;
+}
+
+/* The two faces of the domain that meet in each edge of the cells. */
+static void find_pairs(struct writer *w)
+{
+    const struct brc_facets *f = &w->s->facets;
+    for (size_t i = 0; i < w->edges.n; i++) {
+        int32_t face[2] = {-1, -1};
+        int n = 0;
+        for (size_t k = w->edges.first[i]; k < w->edges.first[i + 1]; k++) {
+            int32_t facet = w->edges.side[k].face;
+            if (f->cell[facet][1] >= 0)
+                continue;
+            int32_t own = (int32_t)domain_face(&w->s->domain, f->face[facet]);
+            if (n < 2 && (n == 0 || face[0] != own))
+                face[n++] = own;
+        }
+        bool is_swapped = face[0] > face[1] && n == 2;
+        w->pair[i][0] = n < 2 ? -1 : face[is_swapped];
+        w->pair[i][1] = n < 2 ? -1 : face[!is_swapped];
+    }
+}
+
+/* "x0" for boxes, else "f1". */
+static void face_label(const struct brc_specimen *s, size_t face, char label[LABEL_SIZE])
+{
+    int id = s->domain.plane[face].id;
+    if (s->params.shape == BRC_SHAPE_BOX)
+        snprintf(label, LABEL_SIZE, "%c%d", "xyz"[id / 2], id % 2);
+    else
+        snprintf(label, LABEL_SIZE, "f%zu", face + 1);
+}
+
+/* Labels of all faces that have the vertex, one after the other. */
+static void put_vertex_label(const struct writer *w, int32_t v)
+{
+    const struct brc_convex *d = &w->s->domain;
+    char label[LABEL_SIZE];
+    fputc(' ', w->out);
+    for (size_t f = 0; f < d->n_faces; f++)
+        for (size_t i = d->first[f]; i < d->first[f + 1]; i++)
+            if (d->loop[i] == v) {
+                face_label(w->s, f, label);
+                fputs(label, w->out);
+            }
+    fputc('\n', w->out);
+}
+
+static void put_domain_vertices(const struct writer *w)
+{
+    const struct brc_convex *d = &w->s->domain;
+    const struct brc_facets *f = &w->s->facets;
+    fprintf(w->out, "  *vertex\n   %zu\n", d->n_vertices);
+    for (size_t v = 0; v < d->n_vertices; v++) {
+        size_t nearest = 0;
+        double least = HUGE_VAL, r[3];
+        for (size_t i = 0; i < f->n_vertices; i++) {
+            brc_sub(r, f->vertex[i], d->vertex[v]);
+            if (brc_norm2(r) < least) {
+                least = brc_norm2(r);
+                nearest = i;
+            }
+        }
+        fprintf(w->out, "   %zu", v + 1);
+        put_point(w->out, d->vertex[v]);
+        put_vertex_label(w, (int32_t)v);
+        fprintf(w->out, "      1 %zu\n", nearest + 1);
+    }
+}
+
+static void put_domain_edges(const struct writer *w)
+{
+    fprintf(w->out, "  *edge\n   %zu\n", w->domain_edges.n);
+    for (size_t i = 0; i < w->domain_edges.n; i++) {
+        const struct edge *e = &w->domain_edges.side[w->domain_edges.first[i]];
+        char a[LABEL_SIZE], b[LABEL_SIZE];
+        size_t n = 0;
+        face_label(w->s, (size_t)e[0].face, a);
+        face_label(w->s, (size_t)e[1].face, b);
+        fprintf(w->out, "   %zu 2 %d %d\n     %s%s\n", i + 1, e->low + 1, e->high + 1, a, b);
+        for (size_t k = 0; k < w->edges.n; k++)
+            n += w->pair[k][0] == e[0].face && w->pair[k][1] == e[1].face;
+        fprintf(w->out, "     %zu", n);
+        for (size_t k = 0; k < w->edges.n; k++)
+            if (w->pair[k][0] == e[0].face && w->pair[k][1] == e[1].face)
+                fprintf(w->out, " %zu", k + 1);
+        fputc('\n', w->out);
+    }
+}
+
+static void put_domain_faces(const struct writer *w)
+{
+    const struct brc_convex *d = &w->s->domain;
+    const struct brc_facets *f = &w->s->facets;
+    fprintf(w->out, "  *face\n   %zu\n", d->n_faces);
+    for (size_t i = 0; i < d->n_faces; i++) {
+        char label[LABEL_SIZE];
+        size_t n = 0;
+        face_label(w->s, i, label);
+        fprintf(w->out, "   %zu", i + 1);
+        put_loop(w->out, &w->domain_edges, d->loop + d->first[i], d->first[i + 1] - d->first[i],
+                 false);
+        fprintf(w->out, "     plane\n     4 %.17g", d->plane[i].d);
+        put_point(w->out, d->plane[i].n);
+        for (size_t k = 0; k < f->n_facets; k++)
+            n += f->cell[k][1] < 0 && f->face[k] == d->plane[i].id;
+        fprintf(w->out, "\n     %s\n     %zu", label, n);
+        for (size_t k = 0; k < f->n_facets; k++)
+            if (f->cell[k][1] < 0 && f->face[k] == d->plane[i].id)
+                fprintf(w->out, " %zu", k + 1);
+        fputc('\n', w->out);
+    }
+}
+
+static void put_all(const struct writer *w)
+{
+    fputs("***tess\n **format\n   3.4\n **general\n   3 standard\n", w->out);
+    put_cells(w);
+    put_faces(w);
+    fprintf(w->out, " **domain\n  *general\n   %s\n",
+            w->s->params.shape == BRC_SHAPE_BOX ? "cube" : "planes");
+    put_domain_vertices(w);
+    put_domain_edges(w);
+    put_domain_faces(w);
+    fputs("***end\n", w->out);
+}
+
+int brc_neper_write(struct brc_context *ctx, FILE *out, const struct brc_specimen *s)
+{
+    struct writer w = {.out = out, .s = s};
+    const struct brc_convex *d = &s->domain;
+    int code = find_edges(ctx, s->facets.n_facets, s->facets.first, s->facets.loop, &w.edges);
+    if (code == 0)
+        code = find_edges(ctx, d->n_faces, d->first, d->loop, &w.domain_edges);
+    if (code == 0)
+        w.pair = brc_alloc(ctx, w.edges.n, sizeof *w.pair);
+    if (code == 0 && !w.pair)
+        code = BRC_ERR_MEMORY;
+    if (code == 0) {
+        find_pairs(&w);
+        put_all(&w);
+    }
+    free(w.pair);
+    free_edges(&w.edges);
+    free_edges(&w.domain_edges);
+    return code;
+}

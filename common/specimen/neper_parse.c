@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The words and numbers of Neper's tessellation files. Edges, signs and equations are passed over:
+ * they follow from the loops of the faces. */
+#include "common/specimen/neper_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_DOMAIN_FACES = 100000 };
+
+static int fail(const struct brc_neper_file *t, const char *what)
+{
+    BRC_FAIL(t->ctx, BRC_ERR_INPUT, "%s:%d: %s; found '%.40s'", t->path, t->line, what, t->token);
+}
+
+/* ---- words and numbers --------------------------------------------------------------------- */
+
+static bool next(struct brc_neper_file *t)
+{
+    static const char blanks[] = " \t\r\n";
+    for (; *t->at && strchr(blanks, *t->at); t->at++)
+        t->line += *t->at == '\n';
+    size_t n = strcspn(t->at, blanks), kept = n < BRC_NEPER_TOKEN ? n : BRC_NEPER_TOKEN - 1;
+    memcpy(t->token, t->at, kept);
+    t->token[kept] = '\0';
+    t->at += n;
+    return n > 0;
+}
+
+static int skip(struct brc_neper_file *t, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!next(t))
+            return fail(t, "the file ends too soon");
+    return 0;
+}
+
+static int whole(struct brc_neper_file *t, long low, long high, long *value)
+{
+    char *end = t->token;
+    if (next(t))
+        *value = strtol(t->token, &end, 10);
+    if (end == t->token || *end != '\0' || *value < low || *value > high)
+        return fail(t, "expected a whole number that fits here");
+    return 0;
+}
+
+/* A number of things, each of which takes two bytes of the file at least. */
+static int count(struct brc_neper_file *t, size_t *n)
+{
+    long value, most = (long)(t->size / 2 < INT32_MAX / 64 ? t->size / 2 : INT32_MAX / 64);
+    BRC_TRY(whole(t, 1, most, &value));
+    *n = (size_t)value;
+    return 0;
+}
+
+static int real(struct brc_neper_file *t, double *value)
+{
+    char *end = t->token;
+    if (next(t))
+        *value = strtod(t->token, &end);
+    if (end == t->token || *end != '\0' || !isfinite(*value))
+        return fail(t, "expected a finite number");
+    return 0;
+}
+
+/* Significant digits of the number that was read last, trailing zeros included; 0 for zero. */
+static int significant_digits(const char *token)
+{
+    int n = 0;
+    for (; *token && *token != 'e' && *token != 'E'; token++)
+        n += *token >= '0' && *token <= '9' && (n > 0 || *token != '0');
+    return n;
+}
+
+/* The number of an entry: they count from 1. */
+static int number(struct brc_neper_file *t, size_t i)
+{
+    long value;
+    return whole(t, (long)i + 1, (long)i + 1, &value);
+}
+
+/* Goes behind a heading: from the start of the file, or on from here up to a heading of the same
+ * or a higher level. */
+static int find(struct brc_neper_file *t, const char *heading, bool is_from_start)
+{
+    if (is_from_start) {
+        t->at = t->text;
+        t->line = 1;
+    }
+    while (next(t))
+        if (strcmp(t->token, heading) == 0)
+            return 0;
+    snprintf(t->token, BRC_NEPER_TOKEN, "%s", heading);
+    return fail(t, "a part of the file is missing");
+}
+
+/* ---- parts of the file --------------------------------------------------------------------- */
+
+static int not_read(const struct brc_neper_file *t, const char *what)
+{
+    BRC_FAIL(t->ctx, BRC_ERR_INPUT, "%s:%d: %s", t->path, t->line, what);
+}
+
+/* The kinds of file that are read: three-dimensional, not periodic, formats 2.0 and 3. */
+static int read_kind(struct brc_neper_file *t)
+{
+    long dimension;
+    t->at = t->text;
+    t->line = 1;
+    if (!next(t) || strcmp(t->token, "***tess") != 0)
+        return fail(t, "not a tessellation file of Neper (.tess), which begins with ***tess");
+    BRC_TRY(find(t, "**format", false));
+    BRC_TRY(skip(t, 1));
+    t->is_format_2 = strcmp(t->token, "2.0") == 0;
+    if (!t->is_format_2 && strncmp(t->token, "3.", 2) != 0)
+        return fail(t,
+                    "this format is not read, 2.0 and 3.x are: let a newer Neper write the file");
+    BRC_TRY(find(t, "**general", false));
+    BRC_TRY(whole(t, 1, 3, &dimension));
+    if (dimension != 3)
+        return not_read(t,
+                        "the tessellation is two-dimensional, grains have three dimensions: make "
+                        "it with -dim 3");
+    BRC_TRY(skip(t, 1));
+    if (strncmp(t->token, "periodic", 8) == 0)
+        return not_read(t,
+                        "the tessellation is periodic, so that its cells do not fill a body: make "
+                        "it without -periodicity");
+    return 0;
+}
+
+static int read_cells(struct brc_neper_file *t)
+{
+    BRC_TRY(find(t, "**cell", true));
+    BRC_TRY(count(t, &t->n_cells));
+    while (next(t) && strncmp(t->token, "**", 2) != 0)
+        if (strcmp(t->token, "*seed") == 0)
+            break;
+    if (strcmp(t->token, "*seed") != 0)
+        return 0;
+    t->seed = brc_alloc(t->ctx, t->n_cells, sizeof *t->seed);
+    if (!t->seed)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->n_cells; i++) {
+        BRC_TRY(number(t, i));
+        for (int k = 0; k < 4; k++)
+            BRC_TRY(real(t, &t->seed[i][k]));
+    }
+    return 0;
+}
+
+static int read_vertices(struct brc_neper_file *t)
+{
+    BRC_TRY(find(t, "**vertex", true));
+    BRC_TRY(count(t, &t->n_vertices));
+    t->vertex = brc_alloc(t->ctx, t->n_vertices, sizeof *t->vertex);
+    if (!t->vertex)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->n_vertices; i++) {
+        BRC_TRY(number(t, i));
+        for (int k = 0; k < 3; k++) {
+            BRC_TRY(real(t, &t->vertex[i][k]));
+            int digits = significant_digits(t->token);
+            t->digits = digits > t->digits ? digits : t->digits;
+        }
+        BRC_TRY(skip(t, 1));
+    }
+    return 0;
+}
+
+static int read_face(struct brc_neper_file *t, size_t i)
+{
+    size_t n, n_edges;
+    BRC_TRY(number(t, i));
+    BRC_TRY(count(t, &n));
+    if (n < 3 || t->n_loop + n > t->size / 2)
+        return fail(t, "a face has three vertices at least");
+    t->face[i] = (struct brc_neper_face){{-1, -1}, -1, t->n_loop, (int32_t)n};
+    for (size_t k = 0; k < n; k++) {
+        long v;
+        BRC_TRY(whole(t, 1, (long)t->n_vertices, &v));
+        t->loop[t->n_loop++] = (int32_t)v - 1;
+    }
+    BRC_TRY(count(t, &n_edges));
+    return skip(t, n_edges + 4 + 5); /* edges, equation, state and point */
+}
+
+static int read_faces(struct brc_neper_file *t)
+{
+    BRC_TRY(find(t, "**face", true));
+    BRC_TRY(count(t, &t->n_faces));
+    t->face = brc_alloc(t->ctx, t->n_faces, sizeof *t->face);
+    t->loop = brc_alloc(t->ctx, t->size / 2 + 1, sizeof *t->loop);
+    if (!t->face || !t->loop)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->n_faces; i++)
+        BRC_TRY(read_face(t, i));
+    return 0;
+}
+
+static int read_polyhedra(struct brc_neper_file *t)
+{
+    size_t n;
+    BRC_TRY(find(t, "**polyhedron", true));
+    BRC_TRY(count(t, &n));
+    if (n != t->n_cells)
+        return fail(t, "there must be a polyhedron for each cell");
+    for (size_t i = 0; i < n; i++) {
+        long n_faces;
+        BRC_TRY(number(t, i));
+        BRC_TRY(whole(t, 0, (long)t->n_faces, &n_faces));
+        for (long k = 0; k < n_faces; k++) {
+            long f;
+            BRC_TRY(whole(t, -(long)t->n_faces, (long)t->n_faces, &f));
+            struct brc_neper_face *face = f == 0 ? NULL : &t->face[labs(f) - 1];
+            if (!face || face->cell[1] >= 0 || face->cell[0] == (int32_t)i)
+                return fail(t, "a face belongs to one polyhedron, or to two");
+            face->cell[face->cell[0] >= 0] = (int32_t)i;
+        }
+    }
+    return 0;
+}
+
+/* Leaves cells without faces out: such a cell has been hidden by others. */
+static int drop_empty_cells(struct brc_neper_file *t)
+{
+    size_t n = 0, n_empty = 0, first = 0;
+    int32_t *number_of = brc_alloc(t->ctx, t->n_cells, sizeof *number_of);
+    if (!number_of)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->n_faces; i++)
+        for (int k = 0; k < 2 && t->face[i].cell[k] >= 0; k++)
+            number_of[t->face[i].cell[k]] = 1;
+    for (size_t i = 0; i < t->n_cells; i++) {
+        if (number_of[i] == 0) {
+            first = n_empty++ == 0 ? i + 1 : first;
+            continue;
+        }
+        if (t->seed)
+            memcpy(t->seed[n], t->seed[i], sizeof *t->seed);
+        number_of[i] = (int32_t)n++;
+    }
+    for (size_t i = 0; i < t->n_faces; i++)
+        for (int k = 0; k < 2 && t->face[i].cell[k] >= 0; k++)
+            t->face[i].cell[k] = number_of[t->face[i].cell[k]];
+    free(number_of);
+    t->n_cells = n;
+    if (n_empty > 0)
+        brc_log(t->ctx, "%s: %zu of the cells have no faces and are left out, first cell %zu",
+                t->path, n_empty, first);
+    return 0;
+}
+
+/* What a face of the domain is: a type with parameters, or in format 2.0 the equation of a plane.
+ */
+static int read_domain_type(struct brc_neper_file *t, size_t i)
+{
+    size_t n;
+    if (t->is_format_2)
+        return skip(t, 4);
+    BRC_TRY(skip(t, 1));
+    t->is_curved[i] = strcmp(t->token, "plane") != 0;
+    BRC_TRY(count(t, &n));
+    return skip(t, n);
+}
+
+/* Which faces lie on which face of the domain. */
+static int read_domain(struct brc_neper_file *t)
+{
+    size_t n;
+    BRC_TRY(find(t, "**domain", true));
+    BRC_TRY(find(t, "*face", false));
+    BRC_TRY(count(t, &t->n_domain));
+    if (t->n_domain > MAX_DOMAIN_FACES)
+        return fail(t, "too many faces of the domain");
+    t->is_curved = brc_alloc(t->ctx, t->n_domain, 1);
+    if (!t->is_curved)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->n_domain; i++) {
+        BRC_TRY(number(t, i));
+        for (int k = 0; k < 2; k++) { /* its vertices and edges */
+            BRC_TRY(count(t, &n));
+            BRC_TRY(skip(t, n));
+        }
+        BRC_TRY(read_domain_type(t, i));
+        BRC_TRY(skip(t, 1)); /* label */
+        BRC_TRY(count(t, &n));
+        for (size_t k = 0; k < n; k++) {
+            long f;
+            BRC_TRY(whole(t, 1, (long)t->n_faces, &f));
+            t->face[f - 1].domain = (int32_t)i;
+        }
+    }
+    return 0;
+}
+
+static int check_faces(const struct brc_neper_file *t)
+{
+    for (size_t i = 0; i < t->n_faces; i++) {
+        const struct brc_neper_face *f = &t->face[i];
+        if (f->cell[0] < 0 || (f->cell[1] < 0) != (f->domain >= 0))
+            BRC_FAIL(t->ctx, BRC_ERR_INPUT,
+                     "%s: face %zu is neither between two polyhedra nor on a face of the domain",
+                     t->path, i + 1);
+    }
+    return 0;
+}
+
+int brc_neper_parse(struct brc_neper_file *t)
+{
+    BRC_TRY(read_kind(t));
+    BRC_TRY(read_cells(t));
+    BRC_TRY(read_vertices(t));
+    BRC_TRY(read_faces(t));
+    BRC_TRY(read_polyhedra(t));
+    BRC_TRY(drop_empty_cells(t));
+    BRC_TRY(read_domain(t));
+    return check_faces(t);
+}
+
+void brc_neper_file_free(struct brc_neper_file *t)
+{
+    free(t->text);
+    free(t->seed);
+    free(t->vertex);
+    free(t->face);
+    free(t->loop);
+    free(t->is_curved);
+}

@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From what a tessellation file holds to cells and their domain. */
+#include "common/specimen/complex.h"
+#include "common/geometry/hilbert.h"
+#include "common/input/input_file.h"
+#include "common/specimen/neper.h"
+#include "common/specimen/neper_file.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* of the specimen's extent */
+static const double flat_tolerance = 1e-6;
+static const double weld_length = 1e-10;
+/* planes of the domain that differ by less are one: as files of planes, or by the file's digits */
+static const double plane_digits = 4e-9, digits_margin = 8;
+
+struct tess {
+    struct brc_neper_file file;
+    double (*centre)[3];      /* of the cells, in the order of the file */
+    size_t *order;            /* cell of the file that comes i-th */
+    double extent, origin[3]; /* places are relative to origin, 0 where the body is near it */
+    double precision;         /* of the vertices: the last digit of the largest */
+};
+
+/* Moves all places to where no digits are lost; middle is that of the body's box. */
+static void come_near(struct tess *t, const double middle[3])
+{
+    brc_convex_origin(middle, t->extent / 2, t->origin);
+    for (size_t i = 0; i < t->file.n_vertices; i++)
+        brc_sub(t->file.vertex[i], t->file.vertex[i], t->origin);
+    for (size_t i = 0; t->file.seed && i < t->file.n_cells; i++)
+        brc_sub(t->file.seed[i], t->file.seed[i], t->origin);
+}
+
+static void scale(struct tess *t, double metres)
+{
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    double largest = 0;
+    for (size_t i = 0; t->file.seed && i < t->file.n_cells; i++)
+        for (int k = 0; k < 4; k++)
+            t->file.seed[i][k] *= metres;
+    for (size_t i = 0; i < t->file.n_vertices; i++) {
+        brc_scale(t->file.vertex[i], t->file.vertex[i], metres);
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], t->file.vertex[i][k]);
+            high[k] = fmax(high[k], t->file.vertex[i][k]);
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])) / metres);
+    brc_sub(high, high, low);
+    t->extent = brc_norm(high);
+    brc_axpy(low, 0.5, high);
+    come_near(t, low);
+    if (largest > 0)
+        t->precision = metres * pow(10, floor(log10(largest)) + 1 - t->file.digits);
+}
+
+/* Area times normal of a face, by its loop, and the mean of its vertices. */
+static void measure_face(const struct tess *t, const struct brc_neper_face *f, double area[3],
+                         double middle[3])
+{
+    const int32_t *loop = t->file.loop + f->first;
+    brc_set(area, 0, 0, 0);
+    brc_set(middle, 0, 0, 0);
+    for (int32_t i = 0; i < f->n; i++)
+        brc_axpy(middle, 1.0 / f->n, t->file.vertex[loop[i]]);
+    for (int32_t i = 0; i < f->n; i++) {
+        double a[3], b[3], cross[3];
+        brc_sub(a, t->file.vertex[loop[i]], middle);
+        brc_sub(b, t->file.vertex[loop[i + 1 < f->n ? i + 1 : 0]], middle);
+        brc_cross(cross, a, b);
+        brc_axpy(area, 0.5, cross);
+    }
+}
+
+/* Means of the faces' middles, which lie inside of convex cells, and the cells' order in space. */
+static int place_cells(struct tess *t)
+{
+    int32_t *n = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *n);
+    t->centre = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *t->centre);
+    t->order = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *t->order);
+    int code = n && t->centre && t->order ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < t->file.n_faces; i++) {
+        double area[3], middle[3];
+        measure_face(t, &t->file.face[i], area, middle);
+        for (int k = 0; k < 2 && t->file.face[i].cell[k] >= 0; k++) {
+            brc_axpy(t->centre[t->file.face[i].cell[k]], 1, middle);
+            n[t->file.face[i].cell[k]]++;
+        }
+    }
+    for (size_t i = 0; code == 0 && i < t->file.n_cells; i++)
+        brc_scale(t->centre[i], t->centre[i], 1.0 / n[i]);
+    if (code == 0)
+        code = brc_hilbert_order(t->file.ctx, t->centre, t->file.n_cells, t->order);
+    free(n);
+    return code;
+}
+
+/* A face of the domain that lies in the plane of another one is that one. */
+static int join_domain_faces(struct tess *t, const struct brc_plane *plane,
+                             const struct brc_convex *domain)
+{
+    int32_t *to = brc_alloc(t->file.ctx, t->file.n_domain, sizeof *to);
+    if (!to)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->file.n_domain; i++) {
+        double best = -2;
+        for (size_t k = 0; k < domain->n_faces; k++) {
+            double cosine = brc_dot(domain->plane[k].n, plane[i].n);
+            bool is_own = domain->plane[k].id == (int32_t)i;
+            if (is_own || cosine > best)
+                to[i] = domain->plane[k].id;
+            best = is_own ? 2 : fmax(best, cosine);
+        }
+    }
+    for (size_t i = 0; i < t->file.n_faces; i++)
+        if (t->file.face[i].domain >= 0)
+            t->file.face[i].domain = to[t->file.face[i].domain];
+    free(to);
+    return 0;
+}
+
+/* The planes of the domain by the outward areas of the faces that lie on them. */
+static int make_domain(struct tess *t, struct brc_convex *domain)
+{
+    struct brc_plane *plane = brc_alloc(t->file.ctx, t->file.n_domain, sizeof *plane);
+    double(*sum)[3] = brc_alloc(t->file.ctx, t->file.n_domain, sizeof *sum);
+    int code = plane && sum ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < t->file.n_faces; i++) {
+        const struct brc_neper_face *f = &t->file.face[i];
+        double area[3], middle[3], out[3];
+        if (f->domain < 0)
+            continue;
+        measure_face(t, f, area, middle);
+        brc_sub(out, middle, t->centre[f->cell[0]]);
+        brc_axpy(plane[f->domain].n, brc_dot(area, out) < 0 ? -1 : 1, area);
+        brc_axpy(sum[f->domain], brc_norm(area), middle);
+    }
+    for (size_t i = 0; code == 0 && i < t->file.n_domain; i++) {
+        double area = brc_normalise(plane[i].n, plane[i].n);
+        plane[i].d = area > 0 ? brc_dot(plane[i].n, sum[i]) / area : 0;
+        plane[i].id = (int32_t)i;
+        if (area == 0)
+            code = brc_error_set(t->file.ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
+                                 "%s: face %zu of the domain has no faces of cells", t->file.path,
+                                 i + 1);
+    }
+    if (code == 0)
+        code = brc_convex_enclosed(t->file.ctx, domain, plane, t->file.n_domain,
+                                   fmax(plane_digits, digits_margin * t->precision / t->extent));
+    if (code == 0)
+        code = join_domain_faces(t, plane, domain);
+    free(plane);
+    free(sum);
+    return code;
+}
+
+/* Largest distance of a face's vertex from a plane through a point. */
+static double depth_of(const struct tess *t, const struct brc_neper_face *f, const double n[3],
+                       const double at[3])
+{
+    double depth = 0;
+    for (int32_t k = 0; k < f->n; k++) {
+        double r[3];
+        brc_sub(r, t->file.vertex[t->file.loop[f->first + (size_t)k]], at);
+        depth = fmax(depth, fabs(brc_dot(n, r)));
+    }
+    return depth;
+}
+
+/* A face that is not flat: by its digits, by the shape of the domain, or by regularization. */
+static int fail_flat(const struct tess *t, size_t i, double depth)
+{
+    struct brc_context *ctx = t->file.ctx;
+    const char *path = t->file.path;
+    int32_t domain = t->file.face[i].domain;
+    if (depth <= digits_margin * t->precision)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: the vertices have %d digits, too few for face %zu to be flat: make the "
+                 "tessellation larger, and say what the length 1 is there by specimen.tess_unit",
+                 path, t->file.digits, i + 1);
+    if (domain >= 0 && t->file.is_curved[domain])
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "%s: face %zu lies on a curved face of the domain (%d), and grains have flat ones: "
+            "use a domain of planes, a prism for a cylinder",
+            path, i + 1, domain + 1);
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "%s: face %zu is not flat; make the tessellation without regularization", path, i + 1);
+}
+
+/* Faces on the domain lie on its planes, too, onto which their vertices are moved. */
+static int check_flat(const struct tess *t, size_t i, const double n[3], const double middle[3],
+                      const struct brc_convex *domain)
+{
+    const struct brc_neper_face *f = &t->file.face[i];
+    double depth = depth_of(t, f, n, middle);
+    for (size_t k = 0; k < domain->n_faces && f->domain >= 0; k++) {
+        const struct brc_plane *p = &domain->plane[k];
+        double at[3];
+        brc_scale(at, p->n, p->d);
+        if (p->id == f->domain)
+            depth = fmax(depth, depth_of(t, f, p->n, at));
+    }
+    return depth <= flat_tolerance * t->extent ? 0 : fail_flat(t, i, depth);
+}
+
+/* A face as a facet: out of its lower cell, the loop turned to fit. */
+static int add_facet(struct tess *t, struct brc_complex *c, size_t i, const int32_t *number_of,
+                     const struct brc_convex *domain)
+{
+    const struct brc_neper_face *f = &t->file.face[i];
+    int32_t *loop = t->file.loop + f->first;
+    double n[3], middle[3], out[3];
+    measure_face(t, f, n, middle);
+    brc_normalise(n, n);
+    BRC_TRY(check_flat(t, i, n, middle, domain));
+    int32_t low = f->cell[0], high = f->cell[1];
+    if (high >= 0 && number_of[high] < number_of[low]) {
+        low = f->cell[1];
+        high = f->cell[0];
+    }
+    brc_sub(out, middle, t->centre[low]);
+    if (brc_dot(n, out) < 0) {
+        brc_scale(n, n, -1);
+        for (int32_t k = 0; k < f->n / 2; k++) {
+            int32_t v = loop[k];
+            loop[k] = loop[f->n - 1 - k];
+            loop[f->n - 1 - k] = v;
+        }
+    }
+    struct brc_complex_facet facet = {{number_of[low], high < 0 ? -1 : number_of[high]},
+                                      high < 0 ? f->domain : BRC_FACE_INNER,
+                                      f->n,
+                                      0,
+                                      {n[0], n[1], n[2]}};
+    return brc_complex_add_facet(t->file.ctx, c, &facet, loop);
+}
+
+static int fill_complex(struct tess *t, struct brc_complex *c, const struct brc_convex *domain)
+{
+    int32_t *number_of = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *number_of);
+    int code = number_of ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < t->file.n_cells; i++)
+        number_of[t->order[i]] = (int32_t)i;
+    for (size_t v = 0; code == 0 && v < t->file.n_vertices; v++)
+        code = brc_complex_add_vertex(t->file.ctx, c, t->file.vertex[v]);
+    for (size_t i = 0; code == 0 && i < t->file.n_faces; i++)
+        code = add_facet(t, c, i, number_of, domain);
+    free(number_of);
+    if (code == 0)
+        code = brc_complex_weld(t->file.ctx, c, weld_length * t->extent);
+    return code == 0 ? brc_complex_settle(t->file.ctx, c, domain) : code;
+}
+
+/* A seed on the other side of a face gives way to the centre of its cell: cells are measured from
+ * their seeds. */
+static void keep_seeds_inside(struct tess *t)
+{
+    for (size_t i = 0; i < t->file.n_faces; i++) {
+        const struct brc_neper_face *f = &t->file.face[i];
+        double area[3], middle[3], to_seed[3], to_centre[3];
+        measure_face(t, f, area, middle);
+        for (int k = 0; k < 2 && f->cell[k] >= 0; k++) {
+            double *seed = t->file.seed[f->cell[k]];
+            brc_sub(to_seed, seed, middle);
+            brc_sub(to_centre, t->centre[f->cell[k]], middle);
+            if (brc_dot(to_seed, area) * brc_dot(to_centre, area) <= 0)
+                brc_copy(seed, t->centre[f->cell[k]]);
+        }
+    }
+}
+
+static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, double volume,
+                       struct brc_facets *out)
+{
+    if (t->file.seed && !has_spheres)
+        keep_seeds_inside(t);
+    out->precision = t->precision;
+    out->seed = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *out->seed);
+    out->radius = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *out->radius);
+    if (!out->seed || !out->radius)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->file.n_cells; i++) {
+        size_t own = t->order[i];
+        brc_copy(out->seed[i], t->file.seed ? t->file.seed[own] : t->centre[own]);
+        out->radius[i] = t->file.seed && has_spheres ? t->file.seed[own][3] : 0;
+    }
+    BRC_TRY(brc_complex_finish(t->file.ctx, c, out));
+    return brc_facets_verify(t->file.ctx, out, volume, t->origin);
+}
+
+static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_convex *domain,
+                    struct brc_facets *out)
+{
+    struct brc_complex c;
+    double volume, centroid[3], inertia[3][3];
+    BRC_TRY(brc_neper_parse(&t->file));
+    scale(t, metres);
+    BRC_TRY(place_cells(t));
+    BRC_TRY(make_domain(t, domain));
+    brc_convex_mass(domain, &volume, centroid, inertia);
+    brc_complex_init(&c, t->file.n_cells);
+    int code = fill_complex(t, &c, domain);
+    if (code == 0)
+        code = make_facets(t, &c, has_spheres, volume, out);
+    brc_complex_free(&c);
+    if (code == 0 && brc_norm(t->origin) > 0) {
+        brc_convex_shift(domain, t->origin);
+        brc_facets_shift(out, t->origin);
+    }
+    return code;
+}
+
+static int read_text(struct tess *t)
+{
+    const struct brc_input in = {
+        .key = "specimen.tess", .path = t->file.path, .largest = BRC_INPUT_LARGEST};
+    return brc_input_read(t->file.ctx, &in, &t->file.text, &t->file.size);
+}
+
+int brc_neper_read(struct brc_context *ctx, const char *path, double metres, bool has_spheres,
+                   struct brc_convex *domain, struct brc_facets *out)
+{
+    struct tess t = {.file = {.ctx = ctx, .path = path}};
+    int code = read_text(&t);
+    if (code == 0)
+        code = make_all(&t, metres, has_spheres, domain, out);
+    brc_neper_file_free(&t.file);
+    free(t.centre);
+    free(t.order);
+    return code;
+}

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* vgcm's growth packing: spheres of uniformly distributed diameters are inserted at half of their
+ * radius, grown to the full one, and relaxed without cohesion until they rest. At the paper's solid
+ * fraction they overlap a little everywhere, which is what makes every Laguerre cell a compact one.
+ */
+#include "common/specimen/seeds.h"
+
+#include "common/geometry/grid.h"
+#include "common/base/progress.h"
+#include "common/geometry/vec.h"
+
+#include <gsl/gsl_rng.h>
+#include <stdlib.h>
+
+enum {
+    MAX_TRIES = 10000,      /* random places tried for one sphere */
+    GROWTH_STEPS = 400,     /* steps from half to full radius */
+    MAX_RELAX_STEPS = 20000 /* steps at full radius */
+};
+/* Springs and masses of 1: a sphere of a dense pack touches about 12 others, so its largest
+ * eigenfrequency is below sqrt(4 * 12) and a step of 0.2 is stable. */
+static const double STEP = 0.2, FRICTION = 0.3;
+/* At rest: mean unbalanced force over mean contact force. The packing gives places only, and 1e-3
+ * moves them by less than a thousandth of a radius at six times the cost. */
+static const double REST = 1e-2, LAST_REST = 1e-5;
+static const double SKIN = 0.3; /* of the mean radius */
+/* Spheres whose volumes sum to more than that of the domain press each other out of it. */
+static const double MAX_FRACTION = 1;
+/* Overlap, in mean radii, that counts as none: a loose packing rests when only such are left. */
+static const double LOOSE = 1e-3;
+
+struct packing {
+    const struct brc_convex *domain;
+    size_t n;
+    double (*x)[3], (*v)[3], (*f)[3], (*listed)[3];
+    double *radius;  /* full */
+    double *present; /* at this stage of growth */
+    double mean_radius, skin;
+    struct brc_candidates near;
+    int32_t (*near_wall)[2]; /* sphere and plane of the domain */
+    size_t n_near_wall, cap_near_wall;
+    double contact; /* mean contact force of the last step */
+    struct brc_work work;
+};
+
+static void packing_free(struct packing *p)
+{
+    free(p->v);
+    free(p->f);
+    free(p->listed);
+    free(p->present);
+    brc_candidates_free(&p->near);
+    free(p->near_wall);
+}
+
+/* Mean of d^3 over uniform d: (max^4 - min^4) / (4 (max - min)). */
+static double mean_cube(double low, double high)
+{
+    return (low * low + high * high) * (low + high) / 4;
+}
+
+static int choose_count(struct brc_context *ctx, const struct brc_specimen_params *s,
+                        double domain_volume, size_t *n)
+{
+    double mean = BRC_PI / 6 * mean_cube(s->diameter_min, s->diameter_max);
+    double count = s->count > 0 ? s->count : floor(s->solid_fraction * domain_volume / mean + 0.5);
+    double most = fmin(floor(MAX_FRACTION * domain_volume / mean), BRC_MAX_GRAINS);
+    if (s->diameter_min > s->diameter_max)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "specimen.diameter_min = %g m is larger than specimen.diameter_max = %g m",
+                 s->diameter_min, s->diameter_max);
+    if (count < 1 || most < 1)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "no sphere fits: the domain holds %g m3, a sphere takes %g m3; enlarge the "
+                 "specimen or lower specimen.diameter_min and diameter_max",
+                 domain_volume, mean);
+    if (s->count > most)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "specimen.count = %d spheres have %.3g times the volume of the specimen; at most "
+                 "%.0f fit: lower specimen.count or specimen.diameter_min and diameter_max, or "
+                 "enlarge the specimen",
+                 s->count, count * mean / domain_volume, most);
+    if (count > BRC_MAX_GRAINS)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%g spheres asked for, at most %g are allowed; raise specimen.diameter_min and "
+                 "diameter_max",
+                 count, (double)BRC_MAX_GRAINS);
+    *n = (size_t)count;
+    return 0;
+}
+
+static double wall_distance(const struct brc_plane *plane, const double x[3])
+{
+    return plane->d - brc_dot(plane->n, x);
+}
+
+static bool is_inside(const struct brc_convex *domain, const double x[3], double distance)
+{
+    for (size_t i = 0; i < domain->n_faces; i++)
+        if (wall_distance(&domain->plane[i], x) < distance)
+            return false;
+    return true;
+}
+
+static void random_point(gsl_rng *rng, const double low[3], const double high[3], double x[3])
+{
+    for (int k = 0; k < 3; k++)
+        x[k] = low[k] + (high[k] - low[k]) * gsl_rng_uniform(rng);
+}
+
+/* Uniform places inside the domain, the wall at least half of a radius away. Overlaps at half
+ * radius (8 % of the volume is filled then) are left to the relaxation that follows at once. */
+static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
+                  const struct brc_specimen_params *s)
+{
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (size_t i = 0; i < p->domain->n_vertices; i++) {
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], p->domain->vertex[i][k]);
+            high[k] = fmax(high[k], p->domain->vertex[i][k]);
+        }
+    }
+    for (size_t i = 0; i < p->n; i++) {
+        /* one diameter from each of n equal classes: the solid fraction hits its mark */
+        double rank = ((double)i + gsl_rng_uniform(rng)) / (double)p->n;
+        double d = s->diameter_min + (s->diameter_max - s->diameter_min) * rank;
+        p->radius[i] = d / 2;
+        int tries = 0;
+        do
+            random_point(rng, low, high, p->x[i]);
+        while (!is_inside(p->domain, p->x[i], d / 4) && ++tries < MAX_TRIES);
+        if (tries == MAX_TRIES)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "sphere %zu of radius %g m does not fit into the domain; lower "
+                     "specimen.diameter_max or enlarge the specimen",
+                     i, d / 2);
+    }
+    return 0;
+}
+
+static int list_walls(struct brc_context *ctx, struct packing *p)
+{
+    p->n_near_wall = 0;
+    for (size_t i = 0; i < p->n; i++) {
+        for (size_t k = 0; k < p->domain->n_faces; k++) {
+            if (wall_distance(&p->domain->plane[k], p->x[i]) > p->radius[i] + p->skin)
+                continue;
+            if (p->n_near_wall == p->cap_near_wall) {
+                size_t cap = 2 * p->cap_near_wall + 64;
+                int32_t(*list)[2] = brc_realloc(ctx, p->near_wall, cap, sizeof *list);
+                if (!list)
+                    return BRC_ERR_MEMORY;
+                p->near_wall = list;
+                p->cap_near_wall = cap;
+            }
+            p->near_wall[p->n_near_wall][0] = (int32_t)i;
+            p->near_wall[p->n_near_wall++][1] = (int32_t)k;
+        }
+    }
+    return 0;
+}
+
+static int list_neighbours(struct brc_context *ctx, struct packing *p)
+{
+    bool stale = p->near.pair == NULL;
+    for (size_t i = 0; i < p->n && !stale; i++) {
+        double d[3];
+        brc_sub(d, p->x[i], p->listed[i]);
+        stale = brc_norm2(d) > 0.25 * p->skin * p->skin;
+    }
+    if (!stale)
+        return 0;
+    for (size_t i = 0; i < p->n; i++)
+        brc_copy(p->listed[i], p->x[i]);
+    BRC_TRY(list_walls(ctx, p));
+    return brc_grid_pairs(ctx, p->x, p->radius, p->n, p->skin, &p->near);
+}
+
+/* Overlap times the direction, between spheres and against the domain's planes. */
+static void repel(struct packing *p)
+{
+    double sum = 0;
+    size_t touching = 0;
+    for (size_t i = 0; i < p->n; i++)
+        brc_set(p->f[i], 0, 0, 0);
+    for (size_t k = 0; k < p->near.n; k++) {
+        int32_t a = p->near.pair[k][0], b = p->near.pair[k][1];
+        double d[3], reach = p->present[a] + p->present[b];
+        brc_sub(d, p->x[b], p->x[a]);
+        double distance = brc_norm(d);
+        if (distance >= reach || distance == 0)
+            continue;
+        double push = (reach - distance) / distance;
+        brc_axpy(p->f[b], push, d);
+        brc_axpy(p->f[a], -push, d);
+        sum += reach - distance;
+        touching++;
+    }
+    for (size_t k = 0; k < p->n_near_wall; k++) {
+        int32_t i = p->near_wall[k][0];
+        const struct brc_plane *plane = &p->domain->plane[p->near_wall[k][1]];
+        double gap = wall_distance(plane, p->x[i]) - p->present[i];
+        if (gap < 0)
+            brc_axpy(p->f[i], gap, plane->n);
+    }
+    p->contact = touching > 0 ? sum / (double)touching : 0;
+}
+
+/* One damped step; ratio is the mean unbalanced force over the mean contact force. */
+static int relax(struct brc_context *ctx, struct packing *p, double *ratio)
+{
+    double unbalanced = 0;
+    BRC_TRY(list_neighbours(ctx, p));
+    repel(p);
+    for (size_t i = 0; i < p->n; i++) {
+        unbalanced += brc_norm(p->f[i]);
+        brc_scale(p->v[i], p->v[i], 1 - FRICTION * STEP);
+        brc_axpy(p->v[i], STEP, p->f[i]);
+        brc_axpy(p->x[i], STEP, p->v[i]);
+    }
+    *ratio = unbalanced / (double)p->n / fmax(p->contact, LOOSE * p->mean_radius);
+    return 0;
+}
+
+/* The first sphere whose centre is not in its own Laguerre cell (another's power there is lower), n
+ * when there is none. Such a centre lies inside the other sphere, so near pairs are all to test. */
+static size_t find_swallowed(const struct packing *p)
+{
+    for (size_t k = 0; k < p->near.n; k++) {
+        int32_t a = p->near.pair[k][0], b = p->near.pair[k][1];
+        double d[3], square = p->radius[a] * p->radius[a] - p->radius[b] * p->radius[b];
+        brc_sub(d, p->x[b], p->x[a]);
+        if (brc_norm2(d) <= fabs(square))
+            return (size_t)(square > 0 ? b : a);
+    }
+    return p->n;
+}
+
+static int check_packing(struct brc_context *ctx, const struct packing *p, double ratio)
+{
+    size_t swallowed = find_swallowed(p);
+    if (ratio > REST)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "the packing does not come to rest in %d steps (unbalanced ratio %g); try another "
+                 "specimen.seed or a smaller specimen.solid_fraction",
+                 MAX_RELAX_STEPS, ratio);
+    if (swallowed < p->n)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                 "sphere %zu of radius %g m at (%g, %g, %g) m has its centre in the cell of a "
+                 "larger one; use a narrower range of diameters or a smaller "
+                 "specimen.solid_fraction",
+                 swallowed, p->radius[swallowed], p->x[swallowed][0], p->x[swallowed][1],
+                 p->x[swallowed][2]);
+    for (size_t i = 0; i < p->n; i++)
+        if (!is_inside(p->domain, p->x[i], 0))
+            BRC_FAIL(
+                ctx, BRC_ERR_GEOMETRY,
+                "sphere %zu was pushed out of the domain; use a smaller specimen.solid_fraction",
+                i);
+    return 0;
+}
+
+/* How far the relaxation is, by the logarithm of the ratio that it is to bring down. */
+static double part_at_rest(double ratio, double rest)
+{
+    return fmin(fmax(log(ratio) / log(rest), 0), 1);
+}
+
+/* Grows the spheres and relaxes them until they rest, and longer while a cell lacks its centre. */
+static int grow(struct brc_context *ctx, struct packing *p)
+{
+    double ratio = 1, rest = REST, done = 0;
+    for (int step = 0; step < GROWTH_STEPS; step++) {
+        double part = 0.5 + 0.5 * (step + 1) / GROWTH_STEPS;
+        for (size_t i = 0; i < p->n; i++)
+            p->present[i] = part * p->radius[i];
+        BRC_TRY(relax(ctx, p, &ratio));
+        brc_work_update(&p->work, 0.5 * step / GROWTH_STEPS);
+    }
+    for (int step = 0; step < MAX_RELAX_STEPS && rest >= LAST_REST; step++) {
+        if (ratio <= rest && find_swallowed(p) == p->n)
+            break;
+        if (ratio <= rest)
+            rest /= 10;
+        BRC_TRY(relax(ctx, p, &ratio));
+        done = fmax(done, part_at_rest(ratio, rest));
+        brc_work_update(&p->work, 0.5 + 0.5 * done);
+    }
+    return check_packing(ctx, p, ratio);
+}
+
+int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *s,
+                      const struct brc_convex *domain, double domain_volume, struct brc_seeds *out)
+{
+    struct packing p = {.domain = domain};
+    BRC_TRY(choose_count(ctx, s, domain_volume, &p.n));
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    p.mean_radius = 0.25 * (s->diameter_min + s->diameter_max);
+    p.skin = SKIN * p.mean_radius;
+    *out = (struct brc_seeds){.n = p.n};
+    p.x = out->x = brc_alloc(ctx, p.n, sizeof *out->x);
+    p.radius = out->radius = brc_alloc(ctx, p.n, sizeof *out->radius);
+    p.v = brc_alloc(ctx, p.n, sizeof *p.v);
+    p.f = brc_alloc(ctx, p.n, sizeof *p.f);
+    p.listed = brc_alloc(ctx, p.n, sizeof *p.listed);
+    p.present = brc_alloc(ctx, p.n, sizeof *p.present);
+    int code = rng && p.x && p.radius && p.v && p.f && p.listed && p.present ? 0 : BRC_ERR_MEMORY;
+    if (code == 0) {
+        gsl_rng_set(rng, (unsigned long)s->seed);
+        code = insert(ctx, &p, rng, s);
+    }
+    brc_work_begin(&p.work, ctx, "packing");
+    if (code == 0)
+        code = grow(ctx, &p);
+    brc_work_end(&p.work);
+    if (rng)
+        gsl_rng_free(rng);
+    packing_free(&p);
+    if (code != 0)
+        brc_seeds_free(out);
+    return code;
+}

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/specimen/packing_cache.h"
+
+#include "common/base/fields.h"
+#include "common/input/input_file.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* raise when the packing's rules change */
+enum { CACHE_VERSION = 2, PATH_SIZE = 1024 };
+static const char MAGIC[8] = "brcpack";
+
+struct header {
+    char magic[8];
+    uint64_t version, key, n, hash;
+};
+
+static uint64_t cache_key(const struct brc_specimen_params *p, const struct brc_convex *domain)
+{
+    double number[] = {p->diameter_min,  p->diameter_max, p->solid_fraction,
+                       (double)p->count, (double)p->seed, CACHE_VERSION};
+    uint64_t key = brc_hash_bytes(number, sizeof number, BRC_HASH_SEED);
+    for (size_t i = 0; i < domain->n_faces; i++) {
+        key = brc_hash_bytes(domain->plane[i].n, sizeof domain->plane[i].n, key);
+        key = brc_hash_bytes(&domain->plane[i].d, sizeof domain->plane[i].d, key);
+    }
+    return key;
+}
+
+static uint64_t content_hash(const struct brc_seeds *s)
+{
+    uint64_t hash = brc_hash_bytes(s->x, s->n * sizeof *s->x, BRC_HASH_SEED);
+    return brc_hash_bytes(s->radius, s->n * sizeof *s->radius, hash);
+}
+
+/* Folder of the cache, made when create is set; false when there is none. */
+static bool cache_folder(char folder[PATH_SIZE], bool create)
+{
+    const char *own = getenv("BRECCIA_CACHE"), *xdg = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
+    int length = -1;
+    if (own && own[0])
+        length = snprintf(folder, PATH_SIZE, "%s", own);
+    else if (xdg && xdg[0])
+        length = snprintf(folder, PATH_SIZE, "%s/breccia", xdg);
+    else if (home && home[0])
+        length = snprintf(folder, PATH_SIZE, "%s/.cache/breccia", home);
+    if (length < 0 || length >= PATH_SIZE)
+        return false;
+    for (char *at = folder + 1; create && *at; at++) {
+        if (*at != '/')
+            continue;
+        *at = '\0';
+        mkdir(folder, 0777);
+        *at = '/';
+    }
+    return !create || mkdir(folder, 0777) == 0 || errno == EEXIST;
+}
+
+static bool cache_path(char path[PATH_SIZE], uint64_t key, bool create)
+{
+    char folder[PATH_SIZE];
+    if (!cache_folder(folder, create))
+        return false;
+    int length = snprintf(path, PATH_SIZE, "%s/packing-%016llx", folder, (unsigned long long)key);
+    return length > 0 && length < PATH_SIZE;
+}
+
+static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct brc_seeds *out)
+{
+    struct header h;
+    if (fread(&h, sizeof h, 1, file) != 1 || memcmp(h.magic, MAGIC, sizeof MAGIC) != 0 ||
+        h.version != CACHE_VERSION || h.key != key || h.n == 0 || h.n > 10000000)
+        return false;
+    *out = (struct brc_seeds){.n = h.n};
+    out->x = brc_alloc(ctx, out->n, sizeof *out->x);
+    out->radius = brc_alloc(ctx, out->n, sizeof *out->radius);
+    if (out->x && out->radius && fread(out->x, sizeof *out->x, out->n, file) == out->n &&
+        fread(out->radius, sizeof *out->radius, out->n, file) == out->n &&
+        content_hash(out) == h.hash)
+        return true;
+    brc_seeds_free(out);
+    return false;
+}
+
+bool brc_packing_cache_load(struct brc_context *ctx, const struct brc_specimen_params *p,
+                            const struct brc_convex *domain, struct brc_seeds *out)
+{
+    char path[PATH_SIZE];
+    uint64_t key = cache_key(p, domain);
+    const struct brc_input in = {.path = path, .largest = BRC_INPUT_LARGEST, .is_plain = true};
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    FILE *file;
+    if (!p->cache || !cache_path(path, key, false) || brc_input_open(&quiet, &in, &file, NULL) != 0)
+        return false;
+    bool found = read_seeds(file, key, ctx, out);
+    fclose(file);
+    return found;
+}
+
+static bool write_seeds(const char *path, uint64_t key, const struct brc_seeds *s)
+{
+    struct header h = {.version = CACHE_VERSION, .key = key, .n = s->n, .hash = content_hash(s)};
+    memcpy(h.magic, MAGIC, sizeof MAGIC);
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return false;
+    bool written = fwrite(&h, sizeof h, 1, file) == 1 &&
+                   fwrite(s->x, sizeof *s->x, s->n, file) == s->n &&
+                   fwrite(s->radius, sizeof *s->radius, s->n, file) == s->n && fflush(file) == 0 &&
+                   fsync(fileno(file)) == 0;
+    return fclose(file) == 0 && written;
+}
+
+void brc_packing_cache_save(struct brc_context *ctx, const struct brc_specimen_params *p,
+                            const struct brc_convex *domain, const struct brc_seeds *seeds)
+{
+    char path[PATH_SIZE], temporary[PATH_SIZE];
+    uint64_t key = cache_key(p, domain);
+    if (!p->cache)
+        return;
+    bool saved = cache_path(path, key, true);
+    int length = saved ? snprintf(temporary, PATH_SIZE, "%s.%ld", path, (long)getpid()) : -1;
+    saved = saved && length > 0 && length < PATH_SIZE && write_seeds(temporary, key, seeds) &&
+            rename(temporary, path) == 0;
+    if (saved)
+        return;
+    if (length > 0)
+        remove(temporary);
+    brc_log(ctx, "the packing cannot be kept on disk; set BRECCIA_CACHE to a folder that can be "
+                 "written");
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Seed points and sphere sizes (GSL random numbers): gt12's jittered grid and vgcm's growth
+ * packing. */
+#ifndef BRC_SEEDS_H
+#define BRC_SEEDS_H
+
+#include "common/specimen/specimen.h"
+
+struct brc_seeds {
+    size_t n;
+    double (*x)[3]; /* m */
+    double *radius; /* m; NULL for plain Voronoi */
+};
+
+void brc_seeds_free(struct brc_seeds *s);
+/* One point per cubic cell of the box, uniform in a centred box of jitter cells (gt12 Fig 4). */
+int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
+                   struct brc_seeds *out);
+/* The points of the file specimen.points, with radii where it has them; none may be nearer to
+ * another than a thousandth of the grain size. */
+int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *p,
+                     double domain_volume, struct brc_seeds *out);
+/* Uniform diameters, inserted at half radius, grown and relaxed without cohesion (vgcm 2.5). */
+int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *p,
+                      const struct brc_convex *domain, double domain_volume, struct brc_seeds *out);
+/* Renumbers along a space-filling (Hilbert or Morton) curve; ties keep their order. */
+int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s);
+
+#endif

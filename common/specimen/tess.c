@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/specimen/tess.h"
+
+#include "common/base/progress.h"
+#include "common/specimen/tess_cgal.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Lengths in units of the mean cell size. Vertices nearer than weld are one, vertices nearer than a
+ * tenth of it to a domain plane lie on it. Rounding is below 1e-13, facets that matter are above
+ * 1e-6. Only details of just the weld length can spoil a cell; then the next length is tried. */
+static const double weld_lengths[] = {1e-9, 1e-11, 1e-7};
+static const double clip_part = 0.1;
+/* what the cells of CGAL and their cuts take of the time, about */
+static const double cells_part = 0.5, clips_part = 0.3;
+
+static int check_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
+                       const struct brc_convex *domain)
+{
+    if (n == 0 || n > INT32_MAX / 64)
+        BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "%zu seeds; allowed are 1 to %d", n, INT32_MAX / 64);
+    for (size_t i = 0; i < n; i++) {
+        bool is_good = isfinite(brc_norm2(seed[i])) && (!radius || isfinite(radius[i]));
+        for (size_t f = 0; f < domain->n_faces && is_good; f++)
+            is_good = brc_dot(domain->plane[f].n, seed[i]) <= domain->plane[f].d;
+        if (!is_good)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "seed %zu at (%g, %g, %g) m lies outside the domain", i,
+                     seed[i][0], seed[i][1], seed[i][2]);
+        if (radius && radius[i] < 0)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "sphere %zu has the radius %g m; it must not be < 0", i,
+                     radius[i]);
+    }
+    return 0;
+}
+
+static int copy_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
+                      struct brc_facets *out)
+{
+    out->seed = brc_alloc(ctx, n, sizeof *out->seed);
+    out->radius = brc_alloc(ctx, n, sizeof *out->radius);
+    if (!out->seed || !out->radius)
+        return BRC_ERR_MEMORY;
+    memcpy(out->seed, seed, n * sizeof *out->seed);
+    if (radius)
+        memcpy(out->radius, radius, n * sizeof *out->radius);
+    return 0;
+}
+
+static int clip_and_weld(struct brc_context *ctx, struct brc_complex *c,
+                         const struct brc_convex *domain, double weld, struct brc_work *work)
+{
+    BRC_TRY(brc_complex_weld(ctx, c, weld));
+    for (size_t f = 0; f < domain->n_faces; f++) {
+        BRC_TRY(brc_complex_clip(ctx, c, &domain->plane[f], clip_part * weld));
+        brc_work_update(work, cells_part + clips_part * (double)(f + 1) / (double)domain->n_faces);
+    }
+    BRC_TRY(brc_complex_weld(ctx, c, weld));
+    return brc_complex_settle(ctx, c, domain);
+}
+
+/* The input and the work arrays of one call of brc_tess_laguerre; places are relative to origin. */
+struct work {
+    double (*seed)[3];
+    const double *radius;
+    size_t n;
+    const struct brc_convex *domain;
+    double origin[3]; /* 0 where the domain is near */
+    double (*own_seed)[3];
+    struct brc_convex own_domain;
+    double volume, centroid[3];
+    struct brc_complex complex;
+    int32_t *hider;    /* as of brc_cgal_cells */
+    uint8_t *is_empty; /* no cell inside the domain */
+    struct brc_work progress;
+    bool is_incomplete; /* some seed has no cell: no other weld length helps */
+};
+
+/* Names the first seed without a cell and, where known, the seed that takes its place. */
+static int name_missing(struct brc_context *ctx, const struct work *w)
+{
+    const double *radius = w->radius;
+    for (size_t i = 0; i < w->n; i++) {
+        int32_t j = w->hider[i];
+        double x[3], apart[3];
+        brc_add(x, w->seed[i], w->origin);
+        brc_sub(apart, w->seed[i], w->seed[j >= 0 ? (size_t)j : i]);
+        if (j >= 0 && brc_norm2(apart) == 0)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
+                     x[1], x[2]);
+        if (j >= 0)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell: sphere %d, radius "
+                     "%g m, takes its place; relax the packing on or use more equal radii",
+                     i, x[0], x[1], x[2], radius ? radius[i] : 0, j, radius ? radius[j] : 0);
+        if (w->is_empty[i])
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell inside the domain; "
+                     "relax the packing on or use more equal radii",
+                     i, x[0], x[1], x[2], radius ? radius[i] : 0);
+    }
+    return 0;
+}
+
+static int make_cells(struct brc_context *ctx, struct work *w, double weld)
+{
+    brc_complex_free(&w->complex);
+    brc_complex_init(&w->complex, w->n);
+    BRC_TRY(brc_cgal_cells(ctx, w->seed, w->radius, w->n, w->centroid,
+                           brc_convex_reach(w->domain, w->centroid), w->hider, &w->complex));
+    brc_work_update(&w->progress, cells_part);
+    BRC_TRY(clip_and_weld(ctx, &w->complex, w->domain, weld, &w->progress));
+    w->is_incomplete = brc_complex_empty_cells(&w->complex, w->is_empty) > 0;
+    return 0;
+}
+
+static int make_facets(struct brc_context *ctx, struct work *w, double weld, struct brc_facets *out)
+{
+    BRC_TRY(make_cells(ctx, w, weld));
+    if (w->is_incomplete)
+        return name_missing(ctx, w);
+    BRC_TRY(copy_seeds(ctx, w->seed, w->radius, w->n, out));
+    BRC_TRY(brc_complex_finish(ctx, &w->complex, out));
+    return brc_facets_verify(ctx, out, w->volume, w->origin);
+}
+
+/* Tries the weld lengths in turn; the first failure is the one reported. */
+static int try_facets(struct brc_context *ctx, struct work *w, struct brc_facets *out)
+{
+    const int n_tries = (int)(sizeof weld_lengths / sizeof *weld_lengths);
+    double size = cbrt(w->volume / (double)w->n);
+    struct brc_context first = *ctx;
+    int code = 0;
+    for (int i = 0; i < n_tries; i++) {
+        code = make_facets(ctx, w, weld_lengths[i] * size, out);
+        if (code != BRC_ERR_GEOMETRY || w->is_incomplete)
+            return code;
+        brc_facets_free(out);
+        if (i == 0)
+            first = *ctx;
+        brc_error_clear(ctx);
+    }
+    *ctx = first;
+    return code;
+}
+
+/* Moves seeds and domain of a place far from the origin there, where no digits are lost. */
+static int come_near(struct brc_context *ctx, struct work *w)
+{
+    const double zero[3] = {0, 0, 0};
+    double reach = brc_convex_reach(w->domain, w->centroid), back[3];
+    brc_convex_origin(w->centroid, reach, w->origin);
+    if (brc_norm(w->origin) == 0)
+        return 0;
+    brc_scale(back, w->origin, -1);
+    w->own_seed = brc_alloc(ctx, w->n, sizeof *w->own_seed);
+    struct brc_plane *plane = brc_alloc(ctx, w->domain->n_faces, sizeof *plane);
+    int code = w->own_seed && plane ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < w->n; i++)
+        brc_add(w->own_seed[i], w->seed[i], back);
+    if (code == 0) {
+        memcpy(plane, w->domain->plane, w->domain->n_faces * sizeof *plane);
+        brc_planes_shift(plane, w->domain->n_faces, back);
+        code =
+            brc_convex_from_planes(ctx, &w->own_domain, plane, w->domain->n_faces, zero, 4 * reach);
+    }
+    free(plane);
+    w->seed = w->own_seed;
+    w->domain = &w->own_domain;
+    return code;
+}
+
+static int prepare(struct brc_context *ctx, struct work *w)
+{
+    double inertia[3][3];
+    brc_convex_mass(w->domain, &w->volume, w->centroid, inertia);
+    BRC_TRY(check_seeds(ctx, w->seed, w->radius, w->n, w->domain));
+    BRC_TRY(come_near(ctx, w));
+    brc_convex_mass(w->domain, &w->volume, w->centroid, inertia);
+    w->hider = brc_alloc(ctx, w->n, sizeof *w->hider);
+    w->is_empty = brc_alloc(ctx, w->n, sizeof *w->is_empty);
+    return w->hider && w->is_empty ? 0 : BRC_ERR_MEMORY;
+}
+
+int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
+                      const struct brc_convex *domain, double min_area_ratio, uint8_t *hidden,
+                      struct brc_facets *out)
+{
+    struct work w = {.seed = seed, .radius = radius, .n = n, .domain = domain};
+    memset(out, 0, sizeof *out);
+    brc_work_begin(&w.progress, ctx, "tessellating");
+    int code = prepare(ctx, &w);
+    if (code == 0 && hidden)
+        code = make_cells(ctx, &w, weld_lengths[0] * cbrt(w.volume / (double)n));
+    if (code == 0 && hidden)
+        memcpy(hidden, w.is_empty, n);
+    if (code == 0 && !hidden)
+        code = try_facets(ctx, &w, out);
+    if (code == 0 && !hidden)
+        brc_facets_mark_contacts(out, min_area_ratio);
+    if (code == 0 && !hidden && w.own_seed)
+        brc_facets_shift(out, w.origin);
+    brc_work_end(&w.progress);
+    brc_complex_free(&w.complex);
+    brc_convex_free(&w.own_domain);
+    free(w.own_seed);
+    free(w.hider);
+    free(w.is_empty);
+    if (code != 0)
+        brc_facets_free(out);
+    return code;
+}

@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Welding of a complex: near vertices become one, facets without width go, their vertices stay in
+ * order on both sides, and vertices in the middle of an edge go. */
+#include "common/specimen/complex.h"
+
+#include "common/base/grow.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Width of a hash cell in tolerances: few points lie near a border of their cell. */
+static const double hash_cells = 64;
+enum { MAX_PASSES = 1000 };
+
+/* An edge low-high that gets further vertices, in order from low to high. */
+struct split {
+    int32_t low, high;
+    int32_t n, first; /* range in splits.vertex */
+};
+
+struct splits {
+    struct split *list;
+    size_t n, cap;
+    int32_t *vertex;
+    size_t n_vertex, cap_vertex;
+};
+
+struct weld {
+    struct brc_complex *c;
+    double tolerance;
+    int32_t *to;          /* [n_vertices] the vertex that this one becomes */
+    int32_t *head, *next; /* hash table of the kept vertices */
+    size_t n_head;        /* power of 2 */
+    int32_t *loop;        /* work: a loop under construction */
+    size_t cap_loop;
+    int32_t *claim; /* [n_vertices] the last pass that changed facets at the vertex */
+    double *t;      /* work: positions along a narrow facet */
+    size_t cap_t;
+    struct splits splits;
+};
+
+static size_t hash_of(const struct weld *w, const int64_t key[3])
+{
+    uint64_t h = (uint64_t)key[0] * UINT64_C(0x9e3779b97f4a7c15);
+    h = (h ^ (h >> 29) ^ (uint64_t)key[1]) * UINT64_C(0xbf58476d1ce4e5b9);
+    h = (h ^ (h >> 29) ^ (uint64_t)key[2]) * UINT64_C(0x94d049bb133111eb);
+    return (size_t)(h ^ (h >> 31)) & (w->n_head - 1);
+}
+
+/* The first kept vertex within tolerance of v in one hash cell, -1 when there is none. */
+static int32_t find_in_cell(const struct weld *w, int32_t v, const int64_t key[3])
+{
+    for (int32_t u = w->head[hash_of(w, key)]; u >= 0; u = w->next[u]) {
+        double r[3];
+        brc_sub(r, w->c->vertex[u], w->c->vertex[v]);
+        if (brc_norm2(r) <= w->tolerance * w->tolerance)
+            return u;
+    }
+    return -1;
+}
+
+/* Becomes an earlier vertex, or is kept itself. Kept vertices are farther apart than the tolerance,
+ * so that no chain of small steps can join distant ones. */
+static void place_vertex(struct weld *w, int32_t v)
+{
+    int64_t low[3], high[3], own[3], key[3];
+    double size = hash_cells * w->tolerance;
+    for (int k = 0; k < 3; k++) {
+        double x = w->c->vertex[v][k];
+        low[k] = (int64_t)floor((x - w->tolerance) / size);
+        own[k] = (int64_t)floor(x / size);
+        high[k] = (int64_t)floor((x + w->tolerance) / size);
+    }
+    int32_t best = -1;
+    for (key[0] = low[0]; key[0] <= high[0]; key[0]++)
+        for (key[1] = low[1]; key[1] <= high[1]; key[1]++)
+            for (key[2] = low[2]; key[2] <= high[2]; key[2]++) {
+                int32_t u = find_in_cell(w, v, key);
+                if (u >= 0 && (best < 0 || u < best))
+                    best = u;
+            }
+    w->to[v] = best >= 0 ? best : v;
+    if (best < 0) {
+        size_t h = hash_of(w, own);
+        w->next[v] = w->head[h];
+        w->head[h] = v;
+    }
+}
+
+static int join_vertices(struct brc_context *ctx, struct weld *w)
+{
+    struct brc_complex *c = w->c;
+    for (w->n_head = 64; w->n_head < c->n_vertices; w->n_head *= 2)
+        continue;
+    w->to = brc_alloc(ctx, c->n_vertices, sizeof *w->to);
+    w->next = brc_alloc(ctx, c->n_vertices, sizeof *w->next);
+    w->head = brc_alloc(ctx, w->n_head, sizeof *w->head);
+    if (!w->to || !w->next || !w->head)
+        return BRC_ERR_MEMORY;
+    memset(w->head, 0xff, w->n_head * sizeof *w->head);
+    memset(w->to, 0xff, c->n_vertices * sizeof *w->to);
+    for (size_t f = 0; f < c->n_facets; f++)
+        for (int32_t i = 0; i < c->facet[f].n; i++)
+            w->to[c->loop[c->facet[f].first + (size_t)i]] = 0;
+    for (size_t v = 0; v < c->n_vertices; v++)
+        if (w->to[v] == 0)
+            place_vertex(w, (int32_t)v);
+    return 0;
+}
+
+/* Removes repeated neighbours (x x) and spikes (x y x) from a closed loop; returns its length. */
+static int32_t tidy_loop(int32_t *loop, int32_t n)
+{
+    int32_t m = 0, from = 0;
+    for (int32_t i = 0; i < n; i++) {
+        if (m > 0 && loop[m - 1] == loop[i])
+            continue;
+        if (m > 1 && loop[m - 2] == loop[i])
+            m--;
+        else
+            loop[m++] = loop[i];
+    }
+    while (m - from > 2) {
+        if (loop[from] == loop[m - 1])
+            m--;
+        else if (loop[from] == loop[m - 2])
+            m -= 2;
+        else if (loop[from + 1] == loop[m - 1])
+            m--, from++;
+        else
+            break;
+    }
+    memmove(loop, loop + from, (size_t)(m - from) * sizeof *loop);
+    return m - from;
+}
+
+/* Position of the first vertex that comes again later in the loop, -1: none; *again is where. */
+static int32_t find_repeat(const int32_t *loop, int32_t n, int32_t *again)
+{
+    for (int32_t i = 0; i < n; i++)
+        for (*again = i + 1; *again < n; ++*again)
+            if (loop[i] == loop[*again])
+                return i;
+    return -1;
+}
+
+/* Gives facet f the loop in w->loop, tidied; a loop that touches itself becomes two facets. */
+static int set_loop(struct brc_context *ctx, struct weld *w, size_t f, int32_t n)
+{
+    struct brc_complex *c = w->c;
+    n = tidy_loop(w->loop, n);
+    int32_t again, at = n < 3 ? -1 : find_repeat(w->loop, n, &again);
+    if (at >= 0) {
+        struct brc_complex_facet part = c->facet[f];
+        part.n = tidy_loop(w->loop + at, again - at);
+        BRC_TRY(brc_complex_add_facet(ctx, c, &part, w->loop + at));
+        memmove(w->loop + at, w->loop + again, (size_t)(n - again) * sizeof *w->loop);
+        return set_loop(ctx, w, f, n - (again - at));
+    }
+    if (n > c->facet[f].n) {
+        BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + (size_t)n);
+        c->facet[f].first = c->n_loop;
+        c->n_loop += (size_t)n;
+    }
+    c->facet[f].n = n < 3 ? 0 : n;
+    memcpy(c->loop + c->facet[f].first, w->loop, (size_t)c->facet[f].n * sizeof *w->loop);
+    return 0;
+}
+
+/* Renames the vertices of all facets. */
+static int rename_vertices(struct brc_context *ctx, struct weld *w)
+{
+    struct brc_complex *c = w->c;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        int32_t n = c->facet[f].n;
+        bool changed = false;
+        BRC_GROW(ctx, w->loop, w->cap_loop, (size_t)n);
+        for (int32_t i = 0; i < n; i++) {
+            int32_t v = c->loop[c->facet[f].first + (size_t)i];
+            w->loop[i] = w->to[v];
+            changed |= w->to[v] != v;
+        }
+        if (changed)
+            BRC_TRY(set_loop(ctx, w, f, n));
+    }
+    return 0;
+}
+
+static double distance(const struct weld *w, int32_t u, int32_t v)
+{
+    double r[3];
+    brc_sub(r, w->c->vertex[u], w->c->vertex[v]);
+    return brc_norm(r);
+}
+
+/* Position in the loop of the vertex farthest from vertex v. */
+static int32_t farthest(const struct weld *w, const int32_t *loop, int32_t n, int32_t v)
+{
+    int32_t best = 0;
+    for (int32_t i = 1; i < n; i++)
+        if (distance(w, loop[i], v) > distance(w, loop[best], v))
+            best = i;
+    return best;
+}
+
+/* Tells whether a facet is narrower than the tolerance. Then w->loop is its loop from one end,
+ * *tip the position of the other end, and w->t the positions along the line between them. */
+static int is_narrow(struct brc_context *ctx, struct weld *w, size_t f, int32_t *tip, bool *narrow)
+{
+    const struct brc_complex *c = w->c;
+    const int32_t *loop = c->loop + c->facet[f].first;
+    int32_t n = c->facet[f].n;
+    double centroid[3], line[3];
+    double area = brc_polygon_area(c->vertex, loop, (size_t)n, c->facet[f].normal, centroid);
+    int32_t begin = farthest(w, loop, n, loop[0]);
+    *narrow = false;
+    if (fabs(area) > 4 * w->tolerance * distance(w, loop[begin], loop[0]))
+        return 0;
+    BRC_GROW(ctx, w->loop, w->cap_loop, (size_t)n);
+    BRC_GROW(ctx, w->t, w->cap_t, (size_t)n);
+    for (int32_t i = 0; i < n; i++)
+        w->loop[i] = loop[(begin + i) % n];
+    *tip = farthest(w, w->loop, n, w->loop[0]);
+    brc_sub(line, c->vertex[w->loop[*tip]], c->vertex[w->loop[0]]);
+    brc_normalise(line, line);
+    for (int32_t i = 0; i < n; i++) {
+        double r[3];
+        brc_sub(r, c->vertex[w->loop[i]], c->vertex[w->loop[0]]);
+        w->t[i] = brc_dot(r, line);
+        brc_axpy(r, -w->t[i], line);
+        if (brc_norm(r) > w->tolerance)
+            return 0;
+    }
+    *narrow = true;
+    return 0;
+}
+
+static int by_ends(const void *a, const void *b)
+{
+    const struct split *p = a, *q = b;
+    if (p->low != q->low)
+        return p->low < q->low ? -1 : 1;
+    return p->high < q->high ? -1 : p->high > q->high;
+}
+
+/* Adds to the edge at position i of w->loop (from low t to high t when rising) the vertices of the
+ * other side, positions begin..end, that lie between its ends. */
+static int split_edge(struct brc_context *ctx, struct weld *w, int32_t i, int32_t n,
+                      const int32_t range[2])
+{
+    struct splits *s = &w->splits;
+    int32_t j = (i + 1) % n, u = w->loop[i], v = w->loop[j];
+    bool rising = w->t[i] < w->t[j], forward = u < v;
+    double low = rising ? w->t[i] : w->t[j], high = rising ? w->t[j] : w->t[i];
+    struct split split = {forward ? u : v, forward ? v : u, 0, (int32_t)s->n_vertex};
+    BRC_GROW(ctx, s->vertex, s->cap_vertex, s->n_vertex + (size_t)n);
+    /* the other side runs against this edge; the list runs from the low to the high vertex */
+    for (int32_t k = 0; k < range[1] - range[0]; k++) {
+        int32_t at = forward ? range[1] - 1 - k : range[0] + k;
+        if (w->t[at] > low && w->t[at] < high)
+            s->vertex[s->n_vertex + (size_t)split.n++] = w->loop[at];
+    }
+    if (split.n == 0)
+        return 0;
+    BRC_GROW(ctx, s->list, s->cap, s->n + 1);
+    s->list[s->n++] = split;
+    s->n_vertex += (size_t)split.n;
+    return 0;
+}
+
+/* Marks the vertices of a loop as used in this pass; false when one was used before. */
+static bool claim_loop(struct weld *w, int32_t n, int32_t pass)
+{
+    for (int32_t i = 0; i < n; i++)
+        if (w->claim[w->loop[i]] == pass)
+            return false;
+    for (int32_t i = 0; i < n; i++)
+        w->claim[w->loop[i]] = pass;
+    return true;
+}
+
+/* Removes narrow facets: both long sides get the vertices of each other, and so become one. Facets
+ * that share a vertex with one removed in this pass wait for the next. */
+static int close_narrow(struct brc_context *ctx, struct weld *w, int32_t pass, size_t *n_narrow)
+{
+    struct brc_complex *c = w->c;
+    *n_narrow = w->splits.n = w->splits.n_vertex = 0;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        int32_t tip, n = c->facet[f].n;
+        bool narrow;
+        if (n == 0)
+            continue;
+        BRC_TRY(is_narrow(ctx, w, f, &tip, &narrow));
+        if (!narrow)
+            continue;
+        ++*n_narrow;
+        if (!claim_loop(w, n, pass))
+            continue;
+        for (int32_t i = 0; i < n; i++) {
+            int32_t range[2] = {i < tip ? tip + 1 : 1, i < tip ? n : tip};
+            BRC_TRY(split_edge(ctx, w, i, n, range));
+        }
+        c->facet[f].n = 0;
+    }
+    if (w->splits.n > 1)
+        qsort(w->splits.list, w->splits.n, sizeof *w->splits.list, by_ends);
+    return 0;
+}
+
+/* Inserts the new vertices of split edges into all loops. */
+static int apply_splits(struct brc_context *ctx, struct weld *w)
+{
+    struct brc_complex *c = w->c;
+    const struct splits *s = &w->splits;
+    size_t n_facets = c->n_facets;
+    for (size_t f = 0; f < n_facets && s->n > 0; f++) {
+        int32_t n = c->facet[f].n, m = 0;
+        BRC_GROW(ctx, w->loop, w->cap_loop, (size_t)n + s->n_vertex);
+        for (int32_t i = 0; i < n; i++) {
+            const int32_t *loop = c->loop + c->facet[f].first;
+            int32_t u = loop[i], v = loop[i + 1 < n ? i + 1 : 0];
+            struct split key = {u < v ? u : v, u < v ? v : u, 0, 0};
+            const struct split *hit = bsearch(&key, s->list, s->n, sizeof key, by_ends);
+            w->loop[m++] = u;
+            for (int32_t k = 0; hit && k < hit->n; k++)
+                w->loop[m++] = s->vertex[hit->first + (u < v ? k : hit->n - 1 - k)];
+        }
+        if (m > n)
+            BRC_TRY(set_loop(ctx, w, f, m));
+    }
+    return 0;
+}
+
+/* Notes v as a neighbour of u; a third different one sets near[u][0] = -2. */
+static void note_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
+{
+    if (near[u][0] == -2 || near[u][0] == v || near[u][1] == v)
+        return;
+    if (near[u][0] == -1)
+        near[u][0] = v;
+    else if (near[u][1] == -1)
+        near[u][1] = v;
+    else
+        near[u][0] = -2;
+}
+
+/* Removes the vertices that have only two neighbours: they lie in the middle of an edge. */
+static int drop_middle_vertices(struct brc_context *ctx, struct brc_complex *c)
+{
+    int32_t(*near)[2] = brc_alloc(ctx, c->n_vertices, sizeof *near);
+    if (!near)
+        return BRC_ERR_MEMORY;
+    memset(near, 0xff, c->n_vertices * sizeof *near);
+    for (size_t f = 0; f < c->n_facets; f++)
+        for (int32_t i = 0; i < c->facet[f].n; i++) {
+            const int32_t *loop = c->loop + c->facet[f].first;
+            int32_t u = loop[i], v = loop[i + 1 < c->facet[f].n ? i + 1 : 0];
+            note_neighbour(near, u, v);
+            note_neighbour(near, v, u);
+        }
+    for (size_t f = 0; f < c->n_facets; f++) {
+        int32_t *loop = c->loop + c->facet[f].first, n = 0;
+        for (int32_t i = 0; i < c->facet[f].n; i++)
+            if (near[loop[i]][0] == -2)
+                loop[n++] = loop[i];
+        c->facet[f].n = n < 3 ? 0 : n;
+    }
+    free(near);
+    return 0;
+}
+
+/* Drops removed facets, unused vertices and gaps between loops; order stays. */
+static int compact(struct brc_context *ctx, struct brc_complex *c, int32_t *number)
+{
+    size_t n_facets = 0, n_loop = 0;
+    int32_t n = 0;
+    memset(number, 0xff, c->n_vertices * sizeof *number);
+    for (size_t f = 0; f < c->n_facets; f++)
+        for (int32_t i = 0; i < c->facet[f].n; i++) {
+            number[c->loop[c->facet[f].first + (size_t)i]] = 0;
+            n_loop++;
+        }
+    for (size_t v = 0; v < c->n_vertices; v++)
+        if (number[v] == 0) {
+            brc_copy(c->vertex[n], c->vertex[v]);
+            number[v] = n++;
+        }
+    c->n_vertices = (size_t)n;
+    int32_t *loop = brc_alloc(ctx, n_loop, sizeof *loop);
+    if (!loop)
+        return BRC_ERR_MEMORY;
+    n_loop = 0;
+    for (size_t f = 0; f < c->n_facets; f++) {
+        struct brc_complex_facet facet = c->facet[f];
+        if (facet.n == 0)
+            continue;
+        for (int32_t i = 0; i < facet.n; i++)
+            loop[n_loop + (size_t)i] = number[c->loop[facet.first + (size_t)i]];
+        facet.first = n_loop;
+        n_loop += (size_t)facet.n;
+        c->facet[n_facets++] = facet;
+    }
+    free(c->loop);
+    c->loop = loop;
+    c->n_loop = c->cap_loop = n_loop;
+    c->n_facets = n_facets;
+    return 0;
+}
+
+static int weld(struct brc_context *ctx, struct weld *w)
+{
+    BRC_TRY(join_vertices(ctx, w));
+    BRC_TRY(rename_vertices(ctx, w));
+    w->claim = brc_alloc(ctx, w->c->n_vertices, sizeof *w->claim);
+    if (!w->claim)
+        return BRC_ERR_MEMORY;
+    size_t n_narrow = 1;
+    for (int32_t pass = 1; n_narrow > 0; pass++) {
+        if (pass > MAX_PASSES)
+            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
+                     "%zu facets narrower than %g m cannot be closed; move the seeds by chance",
+                     n_narrow, w->tolerance);
+        BRC_TRY(close_narrow(ctx, w, pass, &n_narrow));
+        BRC_TRY(apply_splits(ctx, w));
+    }
+    BRC_TRY(drop_middle_vertices(ctx, w->c));
+    return compact(ctx, w->c, w->to);
+}
+
+int brc_complex_weld(struct brc_context *ctx, struct brc_complex *c, double tolerance)
+{
+    struct weld w = {.c = c, .tolerance = tolerance};
+    int code = weld(ctx, &w);
+    free(w.to);
+    free(w.head);
+    free(w.next);
+    free(w.loop);
+    free(w.claim);
+    free(w.t);
+    free(w.splits.list);
+    free(w.splits.vertex);
+    return code;
+}
