@@ -26,9 +26,9 @@ int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, s
 }
 
 /* Reads the test's case with the trial's values; pictures are left out. */
-static int read_job(struct brc_context *ctx, const struct calib_simulator *s,
-                    const struct calib_trial *trial, const struct brc_model *model,
-                    struct brc_job *job)
+static int read_case(struct brc_context *ctx, const struct calib_simulator *s,
+                     const struct calib_trial *trial, const struct brc_model *model,
+                     struct brc_case *run_case)
 {
     char text[CALIB_MAX_VARIABLES][ASSIGNMENT_SIZE];
     const char *overrides[CALIB_MAX_VARIABLES + 1];
@@ -40,10 +40,10 @@ static int read_job(struct brc_context *ctx, const struct calib_simulator *s,
         overrides[i] = text[i];
     }
     overrides[trial->n] = "output.plots=off";
-    BRC_TRY(brc_job_read(ctx, job, s->path[trial->test], overrides, (int)trial->n + 1));
-    if (job->test.kind != (int)trial->test) {
+    BRC_TRY(brc_case_read(ctx, run_case, s->path[trial->test], overrides, (int)trial->n + 1));
+    if (run_case->test.kind != (int)trial->test) {
         char kind[32];
-        brc_params_choice(brc_params_find(brc_test_param_list, "kind"), &job->test, kind,
+        brc_params_choice(brc_params_find(brc_test_param_list, "kind"), &run_case->test, kind,
                           sizeof kind);
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "calibration: %s is given as the %s test, but its test.kind is %s",
@@ -52,9 +52,9 @@ static int read_job(struct brc_context *ctx, const struct calib_simulator *s,
     return 0;
 }
 
-static int run_job(struct brc_context *ctx, struct calib_simulator *s,
-                   const struct calib_trial *trial, const struct brc_model *model,
-                   const struct brc_job *job, struct brc_summary *out)
+static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
+                     const struct calib_trial *trial, const struct brc_model *model,
+                     const struct brc_case *run_case, struct brc_summary *out)
 {
     char dir[DIR_SIZE];
     struct brc_progress quiet;
@@ -62,11 +62,11 @@ static int run_job(struct brc_context *ctx, struct calib_simulator *s,
     if (snprintf(dir, sizeof dir, "%s/%s", s->dir, test_names[test]) >= DIR_SIZE)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", s->dir);
     if (!s->has_specimen[test]) {
-        BRC_TRY(brc_specimen_create(ctx, &job->specimen, &s->specimen[test]));
+        BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, &s->specimen[test]));
         s->has_specimen[test] = true;
     }
     brc_progress_begin(&quiet, stderr, &trial->model, 1, true);
-    struct brc_run_order order = {.job = job,
+    struct brc_run_order order = {.run_case = run_case,
                                   .model = model,
                                   .specimen = &s->specimen[test],
                                   .dir = dir,
@@ -83,17 +83,17 @@ int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial
 {
     struct calib_simulator *s = user;
     const struct brc_model *model;
-    struct brc_job job = {0};
+    struct brc_case run_case = {0};
     if (!s->path[trial->test])
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "calibration: a target needs the %s test, but no case file is "
                  "given for it",
                  test_names[trial->test]);
-    BRC_TRY(brc_job_model(ctx, trial->model, &model));
-    int code = read_job(ctx, s, trial, model, &job);
+    BRC_TRY(brc_case_model(ctx, trial->model, &model));
+    int code = read_case(ctx, s, trial, model, &run_case);
     if (code == 0)
-        code = run_job(ctx, s, trial, model, &job, out);
-    brc_job_free(&job);
+        code = run_trial(ctx, s, trial, model, &run_case, out);
+    brc_case_free(&run_case);
     return code;
 }
 

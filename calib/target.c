@@ -27,7 +27,7 @@ static const struct brc_param target_params[] = {BRC_PARAM_LIST(CALIB_TARGET_PAR
 
 enum { N_TARGET_PARAMS = sizeof target_params / sizeof target_params[0] };
 
-static int read_target(struct brc_context *ctx, const struct brc_case *c, int quantity,
+static int read_target(struct brc_context *ctx, const struct brc_casefile *c, int quantity,
                        struct calib_target *out)
 {
     const struct calib_quantity *q = &calib_quantities[quantity];
@@ -43,7 +43,7 @@ static int read_target(struct brc_context *ctx, const struct brc_case *c, int qu
     params[1].unit = q->unit;
     params[1].default_text = zero;
     struct brc_param_list list = BRC_PARAMS(params, struct target_params);
-    BRC_TRY(brc_case_section(ctx, c, q->name, list, &values));
+    BRC_TRY(brc_casefile_section(ctx, c, q->name, list, &values));
     out->quantity = (enum calib_quantity_code)quantity;
     out->value = values.value;
     out->deviation = values.deviation;
@@ -51,16 +51,16 @@ static int read_target(struct brc_context *ctx, const struct brc_case *c, int qu
     return 0;
 }
 
-static int read_targets(struct brc_context *ctx, const struct brc_case *c,
+static int read_targets(struct brc_context *ctx, const struct brc_casefile *c,
                         struct calib_targets *out)
 {
     const char *names[CALIB_N_QUANTITIES];
     for (int i = 0; i < CALIB_N_QUANTITIES; i++)
         names[i] = calib_quantities[i].name;
-    BRC_TRY(brc_case_finish(ctx, c, names, CALIB_N_QUANTITIES));
+    BRC_TRY(brc_casefile_finish(ctx, c, names, CALIB_N_QUANTITIES));
     memcpy(out->title, c->head.title, sizeof out->title);
     for (int i = 0; i < CALIB_N_QUANTITIES; i++)
-        if (brc_case_find_section(c, names[i]))
+        if (brc_casefile_find_section(c, names[i]))
             BRC_TRY(read_target(ctx, c, i, &out->target[out->n++]));
     if (out->n == 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
@@ -72,12 +72,12 @@ static int read_targets(struct brc_context *ctx, const struct brc_case *c,
 
 int calib_targets_read(struct brc_context *ctx, const char *path, struct calib_targets *out)
 {
-    struct brc_case c;
+    struct brc_casefile c;
     memset(out, 0, sizeof *out);
-    int code = brc_case_read(ctx, path, &c);
+    int code = brc_casefile_read(ctx, path, &c);
     if (code == 0)
         code = read_targets(ctx, &c, out);
-    brc_case_free(&c);
+    brc_casefile_free(&c);
     return code;
 }
 

@@ -310,11 +310,11 @@ static int read_words(struct brc_context *ctx, const struct command *c, char **w
 
 /* ---- commands ------------------------------------------------------------------------------ */
 
-static int make_specimen(struct brc_context *ctx, const struct brc_job *job,
+static int make_specimen(struct brc_context *ctx, const struct brc_case *run_case,
                          struct brc_specimen *specimen)
 {
-    BRC_TRY(brc_specimen_create(ctx, &job->specimen, specimen));
-    brc_log(ctx, "%s: %zu grains, %zu facets", job->name, specimen->facets.n_cells,
+    BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, specimen));
+    brc_log(ctx, "%s: %zu grains, %zu facets", run_case->name, specimen->facets.n_cells,
             specimen->facets.n_facets);
     brc_specimen_warn(ctx, specimen);
     return 0;
@@ -335,30 +335,31 @@ static void print_summary(const struct brc_summary *s, const char *dir)
     printf("results in %s\n", dir);
 }
 
-static int run_job(struct brc_context *ctx, const struct options *o, const struct brc_job *job)
+static int run_model(struct brc_context *ctx, const struct options *o,
+                     const struct brc_case *run_case)
 {
     char dir[PATH_SIZE];
     struct brc_specimen specimen = {0};
     struct brc_progress progress;
     struct brc_summary summary;
-    struct brc_run_order order = {.job = job,
+    struct brc_run_order order = {.run_case = run_case,
                                   .specimen = &specimen,
                                   .dir = dir,
                                   .is_resumed = o->is_resumed,
                                   .is_forced = o->is_forced,
                                   .progress = &progress};
-    const char *name = o->model ? o->model : job->file.head.model;
+    const char *name = o->model ? o->model : run_case->file.head.model;
     if (!*name)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
                  o->operand);
-    BRC_TRY(brc_job_model(ctx, name, &order.model));
+    BRC_TRY(brc_case_model(ctx, name, &order.model));
     if (o->dir)
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
-        snprintf(dir, sizeof dir, "results/%s/%s", job->name, name);
-    BRC_TRY(brc_run_check_folder(ctx, dir, job, o->is_resumed, o->is_forced));
+        snprintf(dir, sizeof dir, "results/%s/%s", run_case->name, name);
+    BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
     brc_run_leave_on_signals();
-    int code = make_specimen(ctx, job, &specimen);
+    int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0) {
         brc_run_hold_signals();
         code = start_single(ctx);
@@ -376,22 +377,23 @@ static int run_job(struct brc_context *ctx, const struct options *o, const struc
 
 static int act_run(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_job job;
-    int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
+    struct brc_case run_case;
+    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
     if (code == 0) {
-        code = run_job(ctx, o, &job);
-        brc_job_locate(ctx, &job);
+        code = run_model(ctx, o, &run_case);
+        brc_case_locate(ctx, &run_case);
     }
-    brc_job_free(&job);
+    brc_case_free(&run_case);
     brc_comm_end();
     return code;
 }
 
-static int compare_job(struct brc_context *ctx, const struct options *o, const struct brc_job *job)
+static int compare_case(struct brc_context *ctx, const struct options *o,
+                        const struct brc_case *run_case)
 {
     char dir[PATH_SIZE];
     struct brc_specimen specimen = {0};
-    const struct brc_compare_order order = {.job = job,
+    const struct brc_compare_order order = {.run_case = run_case,
                                             .specimen = &specimen,
                                             .dir = dir,
                                             .is_resumed = o->is_resumed,
@@ -400,9 +402,9 @@ static int compare_job(struct brc_context *ctx, const struct options *o, const s
     if (o->dir)
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
-        snprintf(dir, sizeof dir, "results/%s", job->name);
+        snprintf(dir, sizeof dir, "results/%s", run_case->name);
     brc_run_leave_on_signals();
-    int code = make_specimen(ctx, job, &specimen);
+    int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0) {
         brc_run_hold_signals();
         code = brc_compare(ctx, &order);
@@ -415,20 +417,21 @@ static int compare_job(struct brc_context *ctx, const struct options *o, const s
 
 static int act_compare(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_job job;
-    int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
+    struct brc_case run_case;
+    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
     if (code == 0) {
-        code = compare_job(ctx, o, &job);
-        brc_job_locate(ctx, &job);
+        code = compare_case(ctx, o, &run_case);
+        brc_case_locate(ctx, &run_case);
     }
-    brc_job_free(&job);
+    brc_case_free(&run_case);
     return code;
 }
 
-static int converge_job(struct brc_context *ctx, const struct options *o, const struct brc_job *job)
+static int converge_case(struct brc_context *ctx, const struct options *o,
+                         const struct brc_case *run_case)
 {
     char dir[PATH_SIZE];
-    const struct brc_converge_order order = {.job = job,
+    const struct brc_converge_order order = {.run_case = run_case,
                                              .model = o->model,
                                              .dir = dir,
                                              .observable =
@@ -445,7 +448,7 @@ static int converge_job(struct brc_context *ctx, const struct options *o, const 
     if (o->dir)
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
-        snprintf(dir, sizeof dir, "results/%s", job->name);
+        snprintf(dir, sizeof dir, "results/%s", run_case->name);
     brc_run_hold_signals();
     int code = brc_converge(ctx, &order);
     if (code == 0)
@@ -455,13 +458,13 @@ static int converge_job(struct brc_context *ctx, const struct options *o, const 
 
 static int act_converge(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_job job;
-    int code = brc_job_read(ctx, &job, o->operand, o->overrides, o->n_overrides);
+    struct brc_case run_case;
+    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
     if (code == 0) {
-        code = converge_job(ctx, o, &job);
-        brc_job_locate(ctx, &job);
+        code = converge_case(ctx, o, &run_case);
+        brc_case_locate(ctx, &run_case);
     }
-    brc_job_free(&job);
+    brc_case_free(&run_case);
     return code;
 }
 
@@ -487,7 +490,7 @@ static int act_params(struct brc_context *ctx, const struct options *o)
     char hint[128] = "";
     bool is_found = false;
     int n = 0;
-    for (; n < 64 && brc_job_section(n, &names[n], &list); n++) {
+    for (; n < 64 && brc_case_section(n, &names[n], &list); n++) {
         if (o->operand && strcmp(o->operand, names[n]) != 0)
             continue;
         if (is_found)

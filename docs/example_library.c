@@ -7,12 +7,12 @@
 
 #include <stdio.h>
 
-static int run(struct brc_context *ctx, struct brc_job *job, const struct brc_model *model,
+static int run(struct brc_context *ctx, struct brc_case *job, const struct brc_model *model,
                struct brc_specimen *specimen, struct brc_sim *sim)
 {
     struct brc_result result[BRC_MAX_RESULTS];
     BRC_TRY(brc_specimen_create(ctx, &job->specimen, specimen));
-    BRC_TRY(brc_sim_create(ctx, sim, model, brc_job_params(job, model), specimen, &job->test,
+    BRC_TRY(brc_sim_create(ctx, sim, model, brc_case_params(job, model), specimen, &job->test,
                            &job->run));
     while (!brc_rig_done(sim))
         BRC_TRY(brc_sim_step(sim));
@@ -25,19 +25,19 @@ static int run(struct brc_context *ctx, struct brc_job *job, const struct brc_mo
 int main(int argc, char **argv)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
-    struct brc_job job = {0};
+    struct brc_case job = {0};
     struct brc_specimen specimen = {0};
     struct brc_sim sim = {0};
     const struct brc_model *model = argc == 3 ? brc_registry_find(argv[2]) : NULL;
     if (!model)
         return 2;
-    int code = brc_job_read(&ctx, &job, argv[1], NULL, 0);
+    int code = brc_case_read(&ctx, &job, argv[1], NULL, 0);
     if (code == 0)
         code = run(&ctx, &job, model, &specimen, &sim);
     if (code != 0)
         fprintf(stderr, "%s\n", ctx.message);
     brc_sim_free(&sim);
     brc_specimen_free(&specimen);
-    brc_job_free(&job);
+    brc_case_free(&job);
     return brc_error_exit_status(code);
 }

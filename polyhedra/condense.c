@@ -84,7 +84,7 @@ static double path_of_bond(const struct poly_block *block, int32_t i)
     double length = *poly_bond_length(rows, (size_t)block->row[i]);
     double slope = 2 / (length * p->eps_th), path = 0.5 * fabs(g->opening[i % BRC_LANES]);
     if (p->torsion && p->theta_limit)
-        slope += 1 / (block->sim->bodies.reach[block->b[i]] * p->theta_th);
+        slope += 1 / (block->sim->bodies.bounding_radius[block->b[i]] * p->theta_th);
     return p->breakable ? poly_least(path, (1 - g->broken[i % BRC_LANES]) / slope) : path;
 }
 

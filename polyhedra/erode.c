@@ -90,7 +90,7 @@ static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct eroder 
             p->radius, i, b->volume[i], smallest_inscribed(&e->erosion, f, p->radius));
     BRC_TRY(add_core(ctx, &st->shapes, e, b->x[i], b->q[i]));
     BRC_TRY(keep_areas(ctx, &e->erosion, st->eroded));
-    b->reach[i] = poly_shapes_reach(&st->shapes, i) + p->radius;
+    b->bounding_radius[i] = poly_shapes_reach(&st->shapes, i) + p->radius;
     return 0;
 }
 

@@ -191,8 +191,8 @@ static int prepare_row(struct poly_block *block, int32_t i)
             BRC_TRY(poly_foresee(sim, block->st, row, false));
     }
     block->listed[i] = c->np[row] > 0;
-    g->gap[lane] =
-        rows->wake[row] - sim->bodies.travel[block->a[i]] - sim->bodies.travel[block->b[i]];
+    g->gap[lane] = rows->wake[row] - sim->bodies.path_length[block->a[i]] -
+                   sim->bodies.path_length[block->b[i]];
     if (g->broken[lane] > 1 && poly_params_of(sim)->breakable)
         break_row(block, i);
     return 0;

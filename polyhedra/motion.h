@@ -121,8 +121,8 @@ BRC_LANES_INLINE void motion_of_group(const struct poly_block *block, struct pol
     f->gn = f->gt = brc_lanes_all(0);
     if (block->viscous)
         viscosities(f, block, i);
-    g->path = relative_path(g, gather(bodies->reach, i->a),
-                            gather(bodies->reach, i->b) + block->rest, block->sim->dt);
+    g->path = relative_path(g, gather(bodies->bounding_radius, i->a),
+                            gather(bodies->bounding_radius, i->b) + block->rest, block->sim->dt);
 }
 
 /* Values first and on of what each of four rows has in its column, as fours. */
@@ -268,13 +268,13 @@ BRC_LANES_INLINE void rooms_of_group(struct poly_block *block, struct poly_row_g
     const struct poly_rows *rows = block->sim->pairs.model_columns;
     for (int32_t k = 0, i = BRC_LANES * group; k < BRC_LANES && i < block->n_rows; k++, i++) {
         size_t row = (size_t)block->row[i];
-        double travel = bodies->travel[block->a[i]], wake = rows->wake[row];
-        g->gap[k] = wake - travel - bodies->travel[block->b[i]];
+        double travel = bodies->path_length[block->a[i]], wake = rows->wake[row];
+        g->gap[k] = wake - travel - bodies->path_length[block->b[i]];
         if (block->listed[i]) {
             rows->room[row] -= used[k];
             block->calm[i] = rows->ready[row] && rows->room[row] > rows->calm[row];
         } else {
-            block->calm[i] = travel + bodies->travel[block->b[i]] < wake;
+            block->calm[i] = travel + bodies->path_length[block->b[i]] < wake;
         }
         block->calm[i] &= !(g->broken[k] > 1);
     }

@@ -194,7 +194,8 @@ static inline bool poly_is_condensed(const struct brc_sim *sim)
 /* Smaller one of the radii of two cores about their centres. */
 static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32_t b)
 {
-    return poly_least(sim->bodies.reach[a], sim->bodies.reach[b]) - poly_params_of(sim)->radius;
+    return poly_least(sim->bodies.bounding_radius[a], sim->bodies.bounding_radius[b]) -
+           poly_params_of(sim)->radius;
 }
 
 /* Rotation matrices, core vertices and planes in space for the present poses. */
@@ -211,8 +212,8 @@ void poly_scale_params(const struct poly_scale *scale, struct poly_params *param
 
 /* rows.c: initial bonds, candidates, feature lists. */
 int poly_open_bonds(struct brc_sim *sim, void *state);
-int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
-                     const struct brc_candidates *platens);
+int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                     const struct brc_neighbours *platens);
 /* Lists the features of a row of pairs, or of platens. */
 int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row);
 int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row);
@@ -236,9 +237,9 @@ void poly_condense_row(struct poly_block *block, int32_t i);
  * row has gained since it was computed last is part of the work of all that acts. */
 void poly_account_bond(struct brc_sim *sim, size_t row, double stored);
 
-/* forces.c, walls.c: the loops. */
+/* forces.c, platens.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);
-void poly_walls(struct brc_sim *sim, void *state);
+void poly_platens(struct brc_sim *sim, void *state);
 /* erode.c: cells become eroded cores with the mass of the whole cell (no porosity). */
 int poly_shape(struct brc_sim *sim, void *state);
 /* A core vertex (in space) against a platen whose body is at `at`; a is the grain, b the platen. */

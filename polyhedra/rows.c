@@ -171,7 +171,7 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
 
 /* The candidates, and the rows that are bonded or touch. */
 static int merge_rows(struct brc_context *ctx, struct brc_contacts *c,
-                      const struct brc_candidates *candidates)
+                      const struct brc_neighbours *candidates)
 {
     int32_t(*pair)[2] = brc_alloc(ctx, candidates->n + c->n, sizeof *pair);
     if (pair == NULL)
@@ -193,8 +193,8 @@ static int merge_rows(struct brc_context *ctx, struct brc_contacts *c,
     return code;
 }
 
-int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
-                     const struct brc_candidates *platens)
+int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                     const struct brc_neighbours *platens)
 {
     (void)state;
     BRC_TRY(merge_rows(sim->ctx, &sim->pairs, grains));
@@ -357,7 +357,8 @@ int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
     BRC_TRY(st->kernels.list(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
                              POLY_LIST_SKIN * params->radius, &allowance));
-    rows->wake[row] = sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] + allowance;
+    rows->wake[row] =
+        sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] + allowance;
     rows->room[row] = allowance;
     return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);
 }
@@ -384,6 +385,6 @@ int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
         else
             allowance = fmin(allowance, height - radius);
     }
-    rows->wake[row] = sim->bodies.travel[a] + sim->bodies.travel[c->b[row]] + allowance;
+    rows->wake[row] = sim->bodies.path_length[a] + sim->bodies.path_length[c->b[row]] + allowance;
     return replace_points(sim->ctx, c, row, &st->list, false);
 }

@@ -187,7 +187,7 @@ static void add_near_platen(struct springs *s, size_t row)
     const double *n = brc_sim_platen(s->sim, c->b[row])->n;
     double x[3];
     brc_copy(x, b->x[c->a[row]]);
-    brc_axpy(x, -b->reach[c->a[row]], n);
+    brc_axpy(x, -b->bounding_radius[c->a[row]], n);
     add_near(s, c, row, x, n);
 }
 

@@ -250,7 +250,8 @@ static inline bool poly_is_awake(const struct brc_sim *sim, const struct brc_con
                                  size_t row)
 {
     const struct poly_rows *rows = c->model_columns;
-    return sim->bodies.travel[c->a[row]] + sim->bodies.travel[c->b[row]] >= rows->wake[row];
+    return sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] >=
+           rows->wake[row];
 }
 
 /* A row without bond and listed features, which had no spring in the last step either: its forces

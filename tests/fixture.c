@@ -3,7 +3,7 @@
 
 #include "common/geometry/grid.h"
 #include "common/engine/integrate.h"
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -204,14 +204,14 @@ void fixture_sim(struct fixture *f, const struct brc_model *model, const char *s
 void fixture_case(struct fixture *f, const struct brc_model *model, const char *path,
                   const char *const *overrides, int n)
 {
-    struct brc_job job = {0};
+    struct brc_case run_case = {0};
     drop_specimen(f);
-    CHECK_OK(&f->ctx, brc_job_read(&f->ctx, &job, path, overrides, n));
-    CHECK_OK(&f->ctx, brc_specimen_create(&f->ctx, &job.specimen, &f->specimen));
+    CHECK_OK(&f->ctx, brc_case_read(&f->ctx, &run_case, path, overrides, n));
+    CHECK_OK(&f->ctx, brc_specimen_create(&f->ctx, &run_case.specimen, &f->specimen));
     f->has_specimen = true;
-    int code = brc_sim_create(&f->ctx, &f->sim, model, brc_job_params(&job, model), &f->specimen,
-                              &job.test, &job.run);
-    brc_job_free(&job);
+    int code = brc_sim_create(&f->ctx, &f->sim, model, brc_case_params(&run_case, model),
+                              &f->specimen, &run_case.test, &run_case.run);
+    brc_case_free(&run_case);
     CHECK_OK(&f->ctx, code);
     f->has_sim = true;
 }
@@ -315,16 +315,17 @@ void fixture_place(struct fixture *f, const double q[4], const double u[3])
 void fixture_list(struct fixture *f)
 {
     struct brc_sim *s = &f->sim;
-    struct brc_candidates grains = {0}, platens = {0};
+    struct brc_neighbours grains = {0}, platens = {0};
     for (size_t i = 0; i < s->bodies.n; i++)
-        s->bodies.travel[i] += 100 * s->bodies.reach[i];
-    CHECK_OK(&f->ctx, brc_grid_pairs(&f->ctx, s->bodies.x, s->bodies.reach, s->bodies.n_grains,
-                                     s->skin, &grains));
+        s->bodies.path_length[i] += 100 * s->bodies.bounding_radius[i];
+    CHECK_OK(&f->ctx, brc_grid_pairs(&f->ctx, s->bodies.x, s->bodies.bounding_radius,
+                                     s->bodies.n_grains, s->skin, &grains));
     CHECK_OK(&f->ctx, brc_sim_near_platens(s, &platens));
     CHECK_OK(&f->ctx, s->model.pairs(s, s->state, &grains, &platens));
-    brc_candidates_free(&grains);
-    brc_candidates_free(&platens);
-    memcpy(s->bodies.travel_listed, s->bodies.travel, s->bodies.n * sizeof *s->bodies.travel);
+    brc_neighbours_free(&grains);
+    brc_neighbours_free(&platens);
+    memcpy(s->bodies.path_at_rebuild, s->bodies.path_length,
+           s->bodies.n * sizeof *s->bodies.path_length);
 }
 
 void fixture_forces(struct fixture *f)
@@ -339,7 +340,7 @@ void fixture_carry(struct fixture *f, double dt)
     f->sim.dt = dt;
     for (size_t i = 0; i < b->n; i++) {
         double phi[3], turn[4], old[4];
-        b->travel[i] += dt * (brc_norm(b->v[i]) + b->reach[i] * brc_norm(b->w[i]));
+        b->path_length[i] += dt * (brc_norm(b->v[i]) + b->bounding_radius[i] * brc_norm(b->w[i]));
         brc_axpy(b->x[i], dt, b->v[i]);
         brc_scale(phi, b->w[i], dt);
         brc_quat_from_rotation(turn, phi);

@@ -3,7 +3,7 @@
 
 #include "common/output/h5.h"
 #include "common/output/io_h5.h"
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 #include "tests/fuzz_aid.h"
 
 #include <stdio.h>
@@ -187,7 +187,7 @@ static void write_changed(struct wishes *w)
     struct brc_context ctx = BRC_CONTEXT_INIT;
     struct brc_state state;
     struct brc_h5_file f;
-    FUZZ_MUST(brc_h5_create(&ctx, fuzz_path(), &brc_seal_state, &f) == 0);
+    FUZZ_MUST(brc_h5_create(&ctx, fuzz_path(), &brc_checksum_state, &f) == 0);
     brc_h5_put_group(&f, "provenance");
     put_text(&f, w, "model", scene.model->name);
     put_text(&f, w, "specimen_hash", scene.specimen_hash);
@@ -206,7 +206,7 @@ static int load(struct brc_context *ctx, struct brc_sim *sim)
 {
     char *saved;
     BRC_TRY(brc_h5_read_text(ctx, fuzz_path(), "parameters", &saved));
-    int code = brc_job_same(ctx, saved, texts[0].text);
+    int code = brc_case_same(ctx, saved, texts[0].text);
     free(saved);
     BRC_TRY(code);
     return brc_h5_load(ctx, fuzz_path(), sim, &extra);

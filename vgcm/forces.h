@@ -301,7 +301,7 @@ LOOP(14)
          [VGCM_LOSSES + 2] = forces_10,  \
          [VGCM_LOSSES + 4] = forces_12,  \
          [VGCM_LOSSES + 6] = forces_14}, \
-            walls_loop                   \
+            platens_loop                 \
     }
 
 #endif

@@ -151,7 +151,7 @@ static int create(struct brc_sim *sim, void **state)
     vgcm_scale_params(sim->params, &sim->specimen->facets);
     vgcm_law_of(&own->law, sim->params);
     sim->pairs.is_busy = is_busy;
-    sim->platens.lanes = BRC_LANES; /* walls.h takes so many points of a row at a time */
+    sim->platens.lanes = BRC_LANES; /* platens.h takes so many points of a row at a time */
     *state = own;
     return 0;
 }
@@ -186,7 +186,7 @@ static int shape(struct brc_sim *sim, void *state)
                 reach2 = fmax(reach2, brc_norm2(r));
             }
         }
-        b->reach[i] = fmax(sqrt(reach2), columns->radius[i]);
+        b->bounding_radius[i] = fmax(sqrt(reach2), columns->radius[i]);
     }
     return 0;
 }
@@ -197,8 +197,8 @@ static int bond(struct brc_sim *sim, void *state)
     return vgcm_bond_rows(sim, &own->law);
 }
 
-static int pairs(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
-                 const struct brc_candidates *platens)
+static int pairs(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                 const struct brc_neighbours *platens)
 {
     const struct vgcm_state *own = state;
     return vgcm_pair_rows(sim, &own->law, grains, platens);
@@ -229,10 +229,10 @@ static void forces(struct brc_sim *sim, void *state)
     own->loops->forces[own->flags](sim, &own->law);
 }
 
-static void walls(struct brc_sim *sim, void *state)
+static void platens(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
-    own->loops->walls(sim, &own->law, own->flags);
+    own->loops->platens(sim, &own->law, own->flags);
 }
 
 static void energy(const struct brc_sim *sim, const void *state, double stored[3])
@@ -296,7 +296,7 @@ const struct brc_model brc_model_vgcm = {
     .bond = bond,
     .pairs = pairs,
     .forces = forces,
-    .walls = walls,
+    .platens = platens,
     .energy = energy,
     .springs = springs,
     .check = check,

@@ -371,7 +371,7 @@ static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
 
 /* Sorted union of the rows that stay and the candidates that may touch. */
 static size_t merge_rows(const struct brc_sim *sim, const struct brc_contacts *c,
-                         const struct brc_candidates *list, int32_t (*pair)[2])
+                         const struct brc_neighbours *list, int32_t (*pair)[2])
 {
     bool is_wall = c == &sim->platens;
     size_t n = 0, row = 0, k = 0;
@@ -427,7 +427,7 @@ static int sphere_row(struct brc_sim *sim, const struct vgcm_law *law, struct br
 }
 
 static int update_rows(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
-                       const struct brc_candidates *list)
+                       const struct brc_neighbours *list)
 {
     int32_t(*pair)[2] = brc_alloc(sim->ctx, c->n + list->n, sizeof *pair);
     if (!pair)
@@ -448,7 +448,7 @@ static int update_rows(struct brc_sim *sim, const struct vgcm_law *law, struct b
 }
 
 int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
-                   const struct brc_candidates *grains, const struct brc_candidates *platens)
+                   const struct brc_neighbours *grains, const struct brc_neighbours *platens)
 {
     BRC_TRY(update_rows(sim, law, &sim->pairs, grains));
     return update_rows(sim, law, &sim->platens, platens);

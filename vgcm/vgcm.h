@@ -165,13 +165,13 @@ void vgcm_scale_params(struct vgcm_params *params, const struct brc_facets *face
 double vgcm_radius(const struct brc_facets *facets, size_t cell);
 int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);
 int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
-                   const struct brc_candidates *grains, const struct brc_candidates *platens);
+                   const struct brc_neighbours *grains, const struct brc_neighbours *platens);
 
-/* forces.h and walls.h for each instruction set: the loops over contacts of grains, specialised by
- * the flags of law.h, and the loop over those with platens */
+/* forces.h and platens.h for each instruction set: the loops over contacts of grains, specialised
+ * by the flags of law.h, and the loop over those with platens */
 struct vgcm_loops {
     void (*forces[VGCM_N_LOOPS])(struct brc_sim *sim, const struct vgcm_law *law);
-    void (*walls)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
+    void (*platens)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
 };
 extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2, vgcm_loops_avx512;
 

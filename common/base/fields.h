@@ -2,7 +2,8 @@
 /* Tables: arrays that are declared once, in a field list, from which allocation, free, reordering,
  * hash, comparison, HDF5 output and restart are generated.
  *
- * A field list is an X-macro with two row kinds:
+ * A field list is an X-macro with two row kinds; a third, RENAMED, is for a field that files know
+ * by an older name, as formats do not change with the code:
  *
  *     #define LAW_POINT_FIELDS(SCALAR, VECTOR)                                      \
  *         SCALAR(double, un, BRC_STATE, "m", "normal opening, positive apart")      \
@@ -27,7 +28,7 @@ enum brc_field_flags {
 };
 
 struct brc_field {
-    const char *name;
+    const char *name; /* in files and tables */
     enum brc_type type;
     int width; /* values a row */
     unsigned flags;
@@ -39,13 +40,17 @@ struct brc_field {
 #define BRC_TYPE_OF(type) \
     _Generic((type)0, double : BRC_F64, int32_t : BRC_I32, uint8_t : BRC_U8, int64_t : BRC_I64)
 /* struct members: a column of scalars, a column of rows of n values */
-#define BRC_COLUMN(type, name, flags, unit, meaning)     type *name;
-#define BRC_COLUMN3(type, name, n, flags, unit, meaning) type(*name)[n];
+#define BRC_COLUMN(type, name, flags, unit, meaning)                   type *name;
+#define BRC_COLUMN3(type, name, n, flags, unit, meaning)               type(*name)[n];
+#define BRC_COLUMN_RENAMED(type, name, in_files, flags, unit, meaning) type *name;
 /* descriptors; BRC_OWNER must name the struct while they are expanded */
 #define BRC_FIELD(type, name, flags, unit, meaning) \
     {#name, BRC_TYPE_OF(type), 1, flags, unit, meaning, offsetof(BRC_OWNER, name)},
 #define BRC_FIELD3(type, name, n, flags, unit, meaning) \
     {#name, BRC_TYPE_OF(type), n, flags, unit, meaning, offsetof(BRC_OWNER, name)},
+
+#define BRC_FIELD_RENAMED(type, name, in_files, flags, unit, meaning) \
+    {#in_files, BRC_TYPE_OF(type), 1, flags, unit, meaning, offsetof(BRC_OWNER, name)},
 
 /* A field list with the size of its owner struct; all zero for "no fields". */
 struct brc_fieldset {

@@ -23,7 +23,7 @@ struct row {
 
 static double path_of(const struct brc_sim *sim, size_t body)
 {
-    return sim->bodies.travel[body] - sim->bodies.travel_listed[body];
+    return sim->bodies.path_length[body] - sim->bodies.path_at_rebuild[body];
 }
 
 static double kinetic_of(const struct brc_sim *sim, size_t body)
@@ -155,7 +155,7 @@ static int report(const struct brc_sim *sim, size_t body, const char *what)
              body, x[0], x[1], x[2], what, contact, advice);
 }
 
-int brc_blowup_travel(const struct brc_sim *sim)
+int brc_blowup_path(const struct brc_sim *sim)
 {
     char what[TEXT_SIZE];
     size_t body = worst_body(sim, sim->bodies.n, path_of);

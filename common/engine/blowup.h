@@ -10,7 +10,7 @@
 enum { BRC_BLOWUP_SKINS = 4 };
 
 /* After the drift: a body has moved by more than that, or by no number. Always fails. */
-int brc_blowup_travel(const struct brc_sim *sim);
+int brc_blowup_path(const struct brc_sim *sim);
 /* After the kick: the kinetic energy is no number. Always fails. */
 int brc_blowup_number(const struct brc_sim *sim);
 /* Between steps: fails when the kinetic energy is a thousand times what the ledger knows that the

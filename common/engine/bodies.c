@@ -7,7 +7,8 @@
 #include <string.h>
 
 #define BRC_OWNER struct brc_bodies
-static const struct brc_field body_fields[] = {BRC_BODY_FIELDS(BRC_FIELD, BRC_FIELD3)};
+static const struct brc_field body_fields[] = {
+    BRC_BODY_FIELDS(BRC_FIELD, BRC_FIELD3, BRC_FIELD_RENAMED)};
 #undef BRC_OWNER
 
 int brc_bodies_create(struct brc_context *ctx, struct brc_bodies *b, size_t n_grains,

@@ -7,7 +7,7 @@
 
 /* v and w are half-step values while forces are computed: the displacement of a point in the step
  * that has just been made is (v + w x r) dt, with the positions at its end. */
-#define BRC_BODY_FIELDS(SCALAR, VECTOR)                                                           \
+#define BRC_BODY_FIELDS(SCALAR, VECTOR, RENAMED)                                                  \
     VECTOR(double, x, 3, BRC_STATE, "m", "centre of mass")                                        \
     VECTOR(double, v, 3, BRC_STATE, "m s-1", "velocity, at the half step")                        \
     VECTOR(double, q, 4, BRC_STATE, "1", "orientation, principal axes to space, scalar first")    \
@@ -18,19 +18,22 @@
     VECTOR(double, sum, 8, BRC_SCRATCH, "N, N m", "f, 0, t, 0 of pairs, while they are added up") \
     SCALAR(double, mass, BRC_STATE, "kg", "inertial mass in use; 0 on platens")                   \
     VECTOR(double, inertia, 3, BRC_STATE, "kg m2", "principal moments of inertia in use")         \
-    SCALAR(double, travel, BRC_STATE, "m", "path of the centre plus reach times turn, summed")    \
-    SCALAR(double, travel_listed, BRC_STATE, "m", "travel when candidates were last listed")      \
+    RENAMED(double, path_length, travel, BRC_STATE, "m",                                          \
+            "path of the centre plus bounding radius times turn, summed")                         \
+    RENAMED(double, path_at_rebuild, travel_listed, BRC_STATE, "m",                               \
+            "path_length at the last neighbour search")                                           \
     SCALAR(double, true_mass, BRC_STATE, "kg", "mass from the density")                           \
     VECTOR(double, true_inertia, 3, BRC_STATE, "kg m2", "principal moments from the density")     \
     SCALAR(double, volume, BRC_STATE, "m3", "volume")                                             \
-    SCALAR(double, reach, BRC_STATE, "m", "radius of the bounding sphere about the centre")       \
+    RENAMED(double, bounding_radius, reach, BRC_STATE, "m",                                       \
+            "radius of the bounding sphere about the centre")                                     \
     VECTOR(double, v_mean, 3, BRC_STATE, "m s-1", "mean velocity of the last steps")              \
     VECTOR(double, w_mean, 3, BRC_STATE, "rad s-1", "mean angular velocity of the last steps")    \
     VECTOR(double, x0, 3, BRC_STATE, "m", "centre of mass at the start")                          \
     VECTOR(double, q0, 4, BRC_STATE, "1", "orientation at the start")
 
 struct brc_bodies {
-    BRC_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+    BRC_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED)
     size_t n;        /* grains and platens */
     size_t n_grains; /* grain i is cell i of the specimen; platens follow */
     struct brc_table table;

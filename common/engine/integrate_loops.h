@@ -26,8 +26,8 @@ static void drift(struct brc_sim *sim)
         for (int k = 0; k < 3; k++)
             x[k] += dt * v[k];
         brc_lanes_put3(b->x + i, x);
-        brc_lanes path = dt * (norm_of(v) + brc_lanes_at(b->reach + i) * norm_of(w));
-        brc_lanes_put(b->travel + i, brc_lanes_at(b->travel + i) + path);
+        brc_lanes path = dt * (norm_of(v) + brc_lanes_at(b->bounding_radius + i) * norm_of(w));
+        brc_lanes_put(b->path_length + i, brc_lanes_at(b->path_length + i) + path);
     }
 }
 
@@ -76,7 +76,7 @@ BRC_LANES_INLINE void damped_motion(const struct brc_sim *sim, brc_lanes v[3],
 {
     brc_lanes spared[3];
     brc_lanes_at3(spared, mean);
-    bool is_spared = sim->spares_mean && sim->rig.is_settled;
+    bool is_spared = sim->damp_fluctuation && sim->rig.is_steady;
     for (int k = 0; k < 3; k++)
         v[k] = is_spared ? old[k] - spared[k] : old[k];
 }
@@ -101,7 +101,7 @@ BRC_LANES_INLINE void follow_mean(const struct brc_sim *sim, brc_mask live, doub
                                   const struct push *p)
 {
     brc_lanes at[3];
-    if (!BRC_OPTION(sim->has_mean))
+    if (!BRC_OPTION(sim->tracks_mean))
         return;
     brc_lanes_at3(at, mean);
     for (int k = 0; k < 3; k++)

@@ -2,7 +2,7 @@
 /* Energy ledger. Each term is integrated from its own force: over a step from n to n + 1 a force
  * does the work (F_n + F_n+1)/2 . dx, which with the kinetic energy m v_n-1/2 . v_n+1/2 / 2
  * balances the leapfrog scheme to round-off for linear springs, so that a residual shows a term
- * that is missing or wrong. Models add bond ... viscous in `forces` and `walls`; common adds the
+ * that is missing or wrong. Models add bond ... viscous in `forces` and `platens`; common adds the
  * rest. */
 #ifndef BRC_LEDGER_H
 #define BRC_LEDGER_H

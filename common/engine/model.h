@@ -35,15 +35,15 @@ struct brc_model {
     int (*bond)(struct brc_sim *sim, void *state);
     /* Candidates have changed: open rows that may interact, close those that are apart, keep the
      * state of the rest (brc_contacts_set). Bonded rows stay whatever the candidates say. */
-    int (*pairs)(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
-                 const struct brc_candidates *platens);
+    int (*pairs)(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                 const struct brc_neighbours *platens);
     /* Hot. All rows of sim->pairs for one step: writes f, ta, tb, k (and k_version), updates point
      * state, adds to the ledger when sim->run.ledger is on, appends crack events. No allocation
      * outside brc_contacts_points and brc_events_add, no I/O; reads bodies, never writes them, but
      * for their sum where the model ADDS: then ta and tb need not be written, nor read again. */
     void (*forces)(struct brc_sim *sim, void *state);
     /* The same for the rows of sim->platens. */
-    void (*walls)(struct brc_sim *sim, void *state);
+    void (*platens)(struct brc_sim *sim, void *state);
     /* Energy stored now, from state alone [J]: bond, contact normal, contact shear. */
     void (*energy)(const struct brc_sim *sim, const void *state, double stored[3]);
     /* Springs that act now, linearised, for the stable time step. */

@@ -93,7 +93,7 @@ int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
     REQUIRE(bond);
     REQUIRE(pairs);
     REQUIRE(forces);
-    REQUIRE(walls);
+    REQUIRE(platens);
     REQUIRE(energy);
     REQUIRE(springs);
 #undef REQUIRE

@@ -13,15 +13,18 @@ static const struct brc_param run_params[] = {BRC_PARAM_LIST(BRC_RUN_PARAMS)};
 #undef BRC_OWNER
 const struct brc_param_list brc_run_param_list = BRC_PARAMS(run_params, struct brc_run_params);
 
-#define SIM_SCALAR(type, name, unit, meaning) \
-    {#name, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, name)},
-#define RIG_SCALAR(type, name, unit, meaning) \
-    {"rig_" #name, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, rig.name)},
+#define SIM_RENAMED(type, name, in_files, unit, meaning) \
+    {#in_files, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, name)},
+#define SIM_SCALAR(type, name, unit, meaning) SIM_RENAMED(type, name, name, unit, meaning)
+#define RIG_RENAMED(type, name, in_files, unit, meaning) \
+    {"rig_" #in_files, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, rig.name)},
+#define RIG_SCALAR(type, name, unit, meaning) RIG_RENAMED(type, name, name, unit, meaning)
 #define LEDGER_SCALAR(name, sign, meaning) \
     {"energy_" #name, BRC_F64, "J", meaning, offsetof(struct brc_sim, ledger.name)},
-const struct brc_scalar brc_sim_scalars[] = {BRC_SIM_SCALARS(SIM_SCALAR) BRC_RIG_SCALARS(
-    RIG_SCALAR) BRC_LEDGER_TERMS(LEDGER_SCALAR){"energy_start", BRC_F64, "J", "energy at the start",
-                                                offsetof(struct brc_sim, ledger.start)}};
+const struct brc_scalar brc_sim_scalars[] = {
+    BRC_SIM_SCALARS(SIM_SCALAR, SIM_RENAMED) BRC_RIG_SCALARS(RIG_SCALAR, RIG_RENAMED)
+        BRC_LEDGER_TERMS(LEDGER_SCALAR){"energy_start", BRC_F64, "J", "energy at the start",
+                                        offsetof(struct brc_sim, ledger.start)}};
 const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scalars[0]);
 
 /* steps between two looks at the memory that moved point ranges have left behind */
@@ -78,7 +81,7 @@ static void gather(struct brc_sim *sim)
     add_rows(&sim->platens, b->f, b->t);
 }
 
-int brc_sim_near_platens(const struct brc_sim *sim, struct brc_candidates *out)
+int brc_sim_near_platens(const struct brc_sim *sim, struct brc_neighbours *out)
 {
     const struct brc_bodies *b = &sim->bodies;
     out->n = 0;
@@ -86,41 +89,41 @@ int brc_sim_near_platens(const struct brc_sim *sim, struct brc_candidates *out)
         for (size_t p = b->n_grains; p < b->n; p++) {
             double d[3];
             brc_sub(d, b->x[i], b->x[p]);
-            if (brc_dot(d, brc_sim_platen(sim, (int32_t)p)->n) < b->reach[i] + sim->skin)
-                BRC_TRY(brc_candidates_add(sim->ctx, out, i, p));
+            if (brc_dot(d, brc_sim_platen(sim, (int32_t)p)->n) < b->bounding_radius[i] + sim->skin)
+                BRC_TRY(brc_neighbours_add(sim->ctx, out, i, p));
         }
     }
     return 0;
 }
 
-static int update_candidates(struct brc_sim *sim)
+static int rebuild_neighbours(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
-    struct brc_candidates grains = {0}, platens = {0};
-    int code = brc_grid_pairs(sim->ctx, b->x, b->reach, b->n_grains, sim->skin, &grains);
+    struct brc_neighbours grains = {0}, platens = {0};
+    int code = brc_grid_pairs(sim->ctx, b->x, b->bounding_radius, b->n_grains, sim->skin, &grains);
     if (code == 0)
         code = brc_sim_near_platens(sim, &platens);
     if (code == 0)
         code = sim->model.pairs(sim, sim->state, &grains, &platens);
-    brc_candidates_free(&grains);
-    brc_candidates_free(&platens);
-    memcpy(b->travel_listed, b->travel, b->n * sizeof *b->travel);
-    sim->n_listings++;
+    brc_neighbours_free(&grains);
+    brc_neighbours_free(&platens);
+    memcpy(b->path_at_rebuild, b->path_length, b->n * sizeof *b->path_length);
+    sim->n_rebuilds++;
     return code;
 }
 
 /* The candidate list holds while no two bodies have come nearer by more than the skin. */
-static int check_travel(struct brc_sim *sim)
+static int check_path(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
     bool stale = false;
     for (size_t i = 0; i < b->n; i++) {
-        double moved = b->travel[i] - b->travel_listed[i];
+        double moved = b->path_length[i] - b->path_at_rebuild[i];
         if (!(moved < BRC_BLOWUP_SKINS * sim->skin)) /* not a number included */
-            return brc_blowup_travel(sim);
+            return brc_blowup_path(sim);
         stale |= moved > 0.5 * sim->skin;
     }
-    return stale ? update_candidates(sim) : 0;
+    return stale ? rebuild_neighbours(sim) : 0;
 }
 
 /* Largest sum k / m over the bodies: grows when the stable limit may have fallen. */
@@ -214,7 +217,7 @@ void brc_sim_forces(struct brc_sim *sim)
     if (sim->model.flags & BRC_MODEL_ADDS)
         memset(sim->bodies.sum, 0, sim->bodies.n * sizeof *sim->bodies.sum);
     sim->model.forces(sim, sim->state);
-    sim->model.walls(sim, sim->state);
+    sim->model.platens(sim, sim->state);
     gather(sim);
 }
 
@@ -251,7 +254,7 @@ static int build(struct brc_sim *sim, const struct brc_test_params *test)
     BRC_TRY(brc_rig_create(sim, test));
     start_masses(sim);
     BRC_TRY(sim->model.bond(sim, sim->state));
-    BRC_TRY(update_candidates(sim));
+    BRC_TRY(rebuild_neighbours(sim));
     sim->model.select(sim, sim->state);
     return 0;
 }
@@ -288,10 +291,11 @@ static void choose_damped(struct brc_sim *sim, const struct brc_test_params *tes
 {
     bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE && brc_rig_platens(test) > 0;
     bool is_auto = sim->run.damped == BRC_DAMPED_AUTO;
-    sim->spares_mean = is_auto ? is_adaptive : sim->run.damped == BRC_DAMPED_FLUCTUATION;
-    sim->has_mean = sim->run.regime == BRC_QUASI_STATIC && (is_adaptive || sim->spares_mean);
-    sim->spares_mean &= sim->has_mean;
-    double alpha = sim->spares_mean ? sim->run.fluctuation_damping : sim->run.local_damping;
+    sim->damp_fluctuation = is_auto ? is_adaptive : sim->run.damped == BRC_DAMPED_FLUCTUATION;
+    sim->tracks_mean =
+        sim->run.regime == BRC_QUASI_STATIC && (is_adaptive || sim->damp_fluctuation);
+    sim->damp_fluctuation &= sim->tracks_mean;
+    double alpha = sim->damp_fluctuation ? sim->run.fluctuation_damping : sim->run.local_damping;
     sim->damping_alpha = sim->run.regime == BRC_QUASI_STATIC ? alpha : 0;
 }
 
@@ -391,18 +395,18 @@ static void add_gravity_work(struct brc_sim *sim)
 int brc_sim_step(struct brc_sim *sim)
 {
     size_t events = sim->events.table.n;
-    int64_t listings = sim->n_listings;
+    int64_t listings = sim->n_rebuilds;
     double dt_before = sim->dt;
     brc_integrate_drift(sim);
     sim->ledger.local_damping += sim->damping_ahead;
     add_gravity_work(sim);
     sim->step++;
     sim->time += sim->dt;
-    BRC_TRY(check_travel(sim));
+    BRC_TRY(check_path(sim));
     brc_sim_forces(sim);
     BRC_TRY(sim->ctx->code);
     BRC_TRY(brc_rig_step(sim));
-    BRC_TRY(follow_stiffness(sim, sim->n_listings > listings));
+    BRC_TRY(follow_stiffness(sim, sim->n_rebuilds > listings));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
         return brc_blowup_number(sim);

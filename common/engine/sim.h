@@ -61,32 +61,33 @@ extern const struct brc_param_list brc_run_param_list;
 
 /* Scalars that belong to the state, declared once for saving and hashing (with the ledger's terms).
  */
-#define BRC_RIG_SCALARS(X)                                                    \
-    X(double, rate, "s-1", "strain rate")                                     \
-    X(double, change, "1", "adaptive: change of log rate a step")             \
-    X(double, strain_onset, "1", "adaptive: where damage began; 0: not yet")  \
-    X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")   \
-    X(int64_t, is_lost, "1", "adaptive: the load has fallen from its peak")   \
-    X(int64_t, is_settled, "1", "the start has been left behind")             \
-    X(double, strain, "1", "platen strain, in the sense of the test")         \
-    X(double, force, "N", "mean platen force now, in the sense of the test")  \
-    X(double, force_sum, "N", "sum of force since the last row of the curve") \
-    X(double, strain_sum, "1", "sum of strain since the last row")            \
-    X(int64_t, n_summed, "1", "steps in force_sum")                           \
-    X(double, force_peak, "N", "largest row of the curve")                    \
-    X(double, strain_peak, "1", "platen strain at the peak")                  \
+#define BRC_RIG_SCALARS(X, RENAMED)                                                             \
+    X(double, rate, "s-1", "strain rate")                                                       \
+    X(double, change, "1", "adaptive: change of log rate a step")                               \
+    X(double, strain_onset, "1", "adaptive: where damage began; 0: not yet")                    \
+    X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")                     \
+    RENAMED(int64_t, is_post_peak, is_lost, "1", "adaptive: the load has fallen from its peak") \
+    RENAMED(int64_t, is_steady, is_settled, "1", "the start has been left behind")              \
+    X(double, strain, "1", "platen strain, in the sense of the test")                           \
+    X(double, force, "N", "mean platen force now, in the sense of the test")                    \
+    X(double, force_sum, "N", "sum of force since the last row of the curve")                   \
+    X(double, strain_sum, "1", "sum of strain since the last row")                              \
+    X(int64_t, n_summed, "1", "steps in force_sum")                                             \
+    X(double, force_peak, "N", "largest row of the curve")                                      \
+    X(double, strain_peak, "1", "platen strain at the peak")                                    \
     X(double, unbalanced, "1", "mean unbalanced force / mean contact force")
 
-#define BRC_SIM_SCALARS(X)                                                                        \
+#define BRC_SIM_SCALARS(X, RENAMED)                                                               \
     X(int64_t, step, "1", "steps made")                                                           \
     X(double, time, "s", "time")                                                                  \
     X(double, dt, "s", "time step")                                                               \
     X(double, dt_limit, "s", "stable limit at the last estimate")                                 \
     X(double, stiffness_bound, "s-2", "largest sum k / m at the last estimate of dt_limit")       \
     X(double, damping_ahead, "J", "work of local damping over the half step after the last kick") \
-    X(int64_t, n_listings, "1", "candidate listings so far")
+    RENAMED(int64_t, n_rebuilds, n_listings, "1", "neighbour searches so far")
 
-#define BRC_SCALAR_MEMBER(type, name, unit, meaning) type name;
+#define BRC_SCALAR_MEMBER(type, name, unit, meaning)            type name;
+#define BRC_SCALAR_RENAMED(type, name, in_files, unit, meaning) type name;
 
 struct brc_rig {
     struct brc_test_params params;
@@ -97,7 +98,7 @@ struct brc_rig {
     double length;     /* m, distance of the platens at the start */
     double section;    /* m2, area that force is divided by */
     bool has_gauge[3]; /* grains enough, far enough apart for a strain along x, y, z */
-    BRC_RIG_SCALARS(BRC_SCALAR_MEMBER)
+    BRC_RIG_SCALARS(BRC_SCALAR_MEMBER, BRC_SCALAR_RENAMED)
     struct brc_curve {
         BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)
         struct brc_table table;
@@ -116,13 +117,13 @@ struct brc_sim {
     struct brc_events events;
     struct brc_ledger ledger;
     struct brc_rig rig;
-    BRC_SIM_SCALARS(BRC_SCALAR_MEMBER)
-    double skin;          /* m */
-    double damping_alpha; /* local damping in use: 0 in the dynamic regime */
-    bool has_mean;        /* the mean velocities are kept */
-    bool spares_mean;     /* once the start is settled, local damping leaves them alone */
-    double mass_checked;  /* kg, sum of the masses at the last look at the eigenfrequencies */
-    int64_t k_seen[2];    /* k_version of pairs and platens when dt or masses were last set */
+    BRC_SIM_SCALARS(BRC_SCALAR_MEMBER, BRC_SCALAR_RENAMED)
+    double skin;           /* m */
+    double damping_alpha;  /* local damping in use: 0 in the dynamic regime */
+    bool tracks_mean;      /* the mean velocities are kept */
+    bool damp_fluctuation; /* once the start is settled, local damping leaves them alone */
+    double mass_checked;   /* kg, sum of the masses at the last look at the eigenfrequencies */
+    int64_t k_seen[2];     /* k_version of pairs and platens when dt or masses were last set */
 };
 
 /* A scalar of struct brc_sim (ledger and rig included) by its offset. */
@@ -145,8 +146,9 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
  */
 int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model);
 void brc_sim_free(struct brc_sim *sim);
-/* Grain-platen pairs with (x - platen) . n < reach + skin; platen bodies follow the grains. */
-int brc_sim_near_platens(const struct brc_sim *sim, struct brc_candidates *out);
+/* Grain-platen pairs with (x - platen) . n < bounding radius + skin; platen bodies follow the
+ * grains. */
+int brc_sim_near_platens(const struct brc_sim *sim, struct brc_neighbours *out);
 /* Forces of all contacts after a motion, and their sums on the bodies: part of a step. */
 void brc_sim_forces(struct brc_sim *sim);
 /* One step: drift, candidates, forces, loading, kick, sample. */

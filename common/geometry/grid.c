@@ -14,13 +14,13 @@ struct grid {
     int64_t (*at)[3]; /* [n] cell of each body */
 };
 
-void brc_candidates_free(struct brc_candidates *c)
+void brc_neighbours_free(struct brc_neighbours *c)
 {
     free(c->pair);
-    *c = (struct brc_candidates){0};
+    *c = (struct brc_neighbours){0};
 }
 
-int brc_candidates_add(struct brc_context *ctx, struct brc_candidates *c, size_t a, size_t b)
+int brc_neighbours_add(struct brc_context *ctx, struct brc_neighbours *c, size_t a, size_t b)
 {
     BRC_GROW(ctx, c->pair, c->cap, c->n + 1);
     c->pair[c->n][0] = (int32_t)a;
@@ -76,7 +76,7 @@ static int compare_high(const void *p, const void *q)
 
 /* Appends the pairs (i, j > i) of body i, ascending in j. */
 static int list_body(struct brc_context *ctx, const struct grid *g, const double (*x)[3],
-                     const double *reach, double skin, size_t i, struct brc_candidates *out)
+                     const double *radius, double skin, size_t i, struct brc_neighbours *out)
 {
     size_t start = out->n;
     for (int64_t c = 0; c < 27; c++) {
@@ -87,10 +87,10 @@ static int list_body(struct brc_context *ctx, const struct grid *g, const double
             size_t j = g->body[k];
             if (j <= i || g->at[j][0] != at[0] || g->at[j][1] != at[1] || g->at[j][2] != at[2])
                 continue;
-            double d[3], limit = reach[i] + reach[j] + skin;
+            double d[3], limit = radius[i] + radius[j] + skin;
             brc_sub(d, x[j], x[i]);
             if (brc_norm2(d) < limit * limit)
-                BRC_TRY(brc_candidates_add(ctx, out, i, j));
+                BRC_TRY(brc_neighbours_add(ctx, out, i, j));
         }
     }
     if (out->n > start)
@@ -98,18 +98,18 @@ static int list_body(struct brc_context *ctx, const struct grid *g, const double
     return 0;
 }
 
-int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *reach, size_t n,
-                   double skin, struct brc_candidates *out)
+int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
+                   double skin, struct brc_neighbours *out)
 {
     out->n = 0;
     if (n < 2)
         return 0;
     struct grid g = {0};
     for (size_t i = 0; i < n; i++)
-        g.cell = fmax(g.cell, 2 * reach[i] + skin);
+        g.cell = fmax(g.cell, 2 * radius[i] + skin);
     int code = grid_fill(ctx, &g, x, n);
     for (size_t i = 0; code == 0 && i < n; i++)
-        code = list_body(ctx, &g, x, reach, skin, i, out);
+        code = list_body(ctx, &g, x, radius, skin, i, out);
     grid_free(&g);
     return code;
 }

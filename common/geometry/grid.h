@@ -7,15 +7,15 @@
 #include "common/base/error.h"
 
 /* Sorted pairs (low, high) of bodies whose bounding spheres come within the skin of each other. */
-struct brc_candidates {
+struct brc_neighbours {
     size_t n, cap;
     int32_t (*pair)[2];
 };
 
-int brc_candidates_add(struct brc_context *ctx, struct brc_candidates *c, size_t a, size_t b);
-void brc_candidates_free(struct brc_candidates *c);
-/* Pairs with |x_i - x_j| < reach_i + reach_j + skin. Memory in out is reused. */
-int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *reach, size_t n,
-                   double skin, struct brc_candidates *out);
+int brc_neighbours_add(struct brc_context *ctx, struct brc_neighbours *c, size_t a, size_t b);
+void brc_neighbours_free(struct brc_neighbours *c);
+/* Pairs with |x_i - x_j| < radius_i + radius_j + skin. Memory in out is reused. */
+int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
+                   double skin, struct brc_neighbours *out);
 
 #endif

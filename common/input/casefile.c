@@ -10,31 +10,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BRC_OWNER struct brc_case_params
-static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASE_PARAMS)};
+#define BRC_OWNER struct brc_casefile_params
+static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASEFILE_PARAMS)};
 #undef BRC_OWNER
-const struct brc_param_list brc_case_param_list = BRC_PARAMS(case_params, struct brc_case_params);
+const struct brc_param_list brc_casefile_param_list =
+    BRC_PARAMS(case_params, struct brc_casefile_params);
 
 /* A mapping that is open while the file is read. */
 struct level {
-    char key[BRC_CASE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
-    int line, column;            /* of that key */
-    size_t key_begin;            /* byte where it starts */
-    int place;                   /* of the mapping in the sections, -1: the root */
+    char key[BRC_CASEFILE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
+    int line, column;                /* of that key */
+    size_t key_begin;                /* byte where it starts */
+    int place;                       /* of the mapping in the sections, -1: the root */
     bool has_values;
 };
 
 struct reader {
     struct brc_context *ctx;
-    struct brc_case *c;
-    struct level level[BRC_CASE_MAX_LEVELS];
+    struct brc_casefile *c;
+    struct level level[BRC_CASEFILE_MAX_LEVELS];
     int depth;               /* open mappings */
     bool is_sequence;        /* inside [...] */
     char *sequence;          /* its texts so far, joined by commas */
     bool is_done;            /* the document has ended */
     size_t n_chars, n_bytes; /* up to the same place of the text */
     size_t begin, end;       /* bytes of the last value */
-    int indent;              /* see brc_case_entry */
+    int indent;              /* see brc_casefile_entry */
 };
 
 /* ---- bytes --------------------------------------------------------------------------------- */
@@ -59,7 +60,7 @@ static size_t utf8_length(const unsigned char *s, size_t left)
     return code < lowest[n] || is_control || is_surrogate || is_mark ? 0 : n;
 }
 
-bool brc_case_is_text(const char *text)
+bool brc_casefile_is_text(const char *text)
 {
     size_t size = strlen(text), n = 1;
     for (size_t i = 0; i < size && n > 0; i += n)
@@ -70,9 +71,9 @@ bool brc_case_is_text(const char *text)
 static int check_bytes(struct brc_context *ctx, const char *path, const char *text, size_t size)
 {
     int line = 1;
-    if (size > BRC_CASE_MAX_BYTES)
+    if (size > BRC_CASEFILE_MAX_BYTES)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: the case file is larger than %d bytes", path,
-                 BRC_CASE_MAX_BYTES);
+                 BRC_CASEFILE_MAX_BYTES);
     for (size_t i = 0; i < size;) {
         size_t n = utf8_length((const unsigned char *)text + i, size - i);
         if (n == 0)
@@ -90,16 +91,16 @@ static int check_bytes(struct brc_context *ctx, const char *path, const char *te
 
 static int check_name(struct brc_context *ctx, const char *name, size_t n, const char *where)
 {
-    if (n == 0 || n >= BRC_CASE_KEY_SIZE || memchr(name, '.', n) || memchr(name, '\0', n))
+    if (n == 0 || n >= BRC_CASEFILE_KEY_SIZE || memchr(name, '.', n) || memchr(name, '\0', n))
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: '%.60s' is not a key; a key has 1 to %d characters and no dot", where, name,
-                 BRC_CASE_KEY_SIZE - 1);
+                 BRC_CASEFILE_KEY_SIZE - 1);
     return 0;
 }
 
-static int add_section(struct brc_context *ctx, struct brc_case *c, const char *name, int line)
+static int add_section(struct brc_context *ctx, struct brc_casefile *c, const char *name, int line)
 {
-    const struct brc_case_place *old = brc_case_find_section(c, name);
+    const struct brc_casefile_place *old = brc_casefile_find_section(c, name);
     if (old && old->line > 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s:%d: %s: given twice, first in line %d; keep one of the two", c->path, line,
@@ -112,18 +113,18 @@ static int add_section(struct brc_context *ctx, struct brc_case *c, const char *
         c->sections = block;
         c->cap_sections = cap;
     }
-    struct brc_case_place *s = &c->sections[c->n_sections++];
+    struct brc_casefile_place *s = &c->sections[c->n_sections++];
     snprintf(s->name, sizeof s->name, "%s", name);
     s->line = line;
     return 0;
 }
 
-static int check_entry(struct brc_context *ctx, const struct brc_case *c,
-                       const struct brc_case_entry *e, const char *where)
+static int check_entry(struct brc_context *ctx, const struct brc_casefile *c,
+                       const struct brc_casefile_entry *e, const char *where)
 {
-    if (c->n == BRC_CASE_MAX_ENTRIES)
+    if (c->n == BRC_CASEFILE_MAX_ENTRIES)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: more than %d keys in one case", where,
-                 BRC_CASE_MAX_ENTRIES);
+                 BRC_CASEFILE_MAX_ENTRIES);
     for (size_t i = 0; i < c->n && !e->is_override; i++)
         if (strcmp(c->entries[i].section, e->section) == 0 &&
             strcmp(c->entries[i].key, e->key) == 0)
@@ -133,7 +134,7 @@ static int check_entry(struct brc_context *ctx, const struct brc_case *c,
     return 0;
 }
 
-static int grow_entries(struct brc_context *ctx, struct brc_case *c)
+static int grow_entries(struct brc_context *ctx, struct brc_casefile *c)
 {
     size_t cap = c->cap ? 2 * c->cap : 32;
     if (c->n < c->cap)
@@ -147,18 +148,18 @@ static int grow_entries(struct brc_context *ctx, struct brc_case *c)
 }
 
 /* Adds section.key, or section.parent_key where parent is not NULL, with a copy of text. */
-static int add_entry(struct brc_context *ctx, struct brc_case *c, const char *const name[3],
+static int add_entry(struct brc_context *ctx, struct brc_casefile *c, const char *const name[3],
                      const char *text, int line)
 {
-    struct brc_case_entry e = {.line = line, .is_override = line == 0};
-    char where[BRC_CASE_WHERE_SIZE];
+    struct brc_casefile_entry e = {.line = line, .is_override = line == 0};
+    char where[BRC_CASEFILE_WHERE_SIZE];
     const char *parent = name[1], *key = name[2];
-    brc_case_where(c, line, e.is_override, where);
+    brc_casefile_where(c, line, e.is_override, where);
     snprintf(e.section, sizeof e.section, "%s", name[0]);
     int n = snprintf(e.key, sizeof e.key, "%s%s%s", parent, *parent ? "_" : "", key);
     if (n >= (int)sizeof e.key)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: the key %s.%s.%s is longer than %d characters", where,
-                 name[0], parent, key, BRC_CASE_KEY_SIZE - 1);
+                 name[0], parent, key, BRC_CASEFILE_KEY_SIZE - 1);
     if (strcmp(key, "rule") == 0)
         snprintf(e.parent, sizeof e.parent, "%s", parent);
     BRC_TRY(check_entry(ctx, c, &e, where));
@@ -207,7 +208,7 @@ static int take_value(struct reader *r, const char *text, int line)
     const char *name[3] = {r->depth > 1 ? r->level[0].key : "", r->depth > 2 ? r->level[1].key : "",
                            top->key};
     BRC_TRY(add_entry(r->ctx, r->c, name, text, line));
-    struct brc_case_entry *e = &r->c->entries[r->c->n - 1];
+    struct brc_casefile_entry *e = &r->c->entries[r->c->n - 1];
     e->key_begin = top->key_begin;
     e->place = top->place;
     e->begin = r->begin;
@@ -248,8 +249,8 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
     if (r->is_sequence)
         return take_sequence_item(r, text);
     if (top->key[0] == '\0') {
-        char where[BRC_CASE_WHERE_SIZE];
-        BRC_TRY(check_name(r->ctx, text, n, brc_case_where(r->c, line, false, where)));
+        char where[BRC_CASEFILE_WHERE_SIZE];
+        BRC_TRY(check_name(r->ctx, text, n, brc_casefile_where(r->c, line, false, where)));
         snprintf(top->key, sizeof top->key, "%s", text);
         top->line = line;
         top->column = (int)event->start_mark.column;
@@ -262,13 +263,13 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
                      "%s:%d: '%s' follows a comma: in braces and brackets a comma ends a value, so "
                      "write numbers with a decimal point",
                      r->c->path, top->line, top->key);
-        if (r->depth > 1 || brc_params_find(brc_case_param_list, top->key))
+        if (r->depth > 1 || brc_params_find(brc_casefile_param_list, top->key))
             BRC_FAIL(r->ctx, BRC_ERR_INPUT,
                      "%s:%d: %s: has no value; write one or leave the key out", r->c->path,
                      top->line, top->key);
         BRC_TRY(add_section(r->ctx, r->c, top->key, top->line));
-        struct brc_case_place *s = &r->c->sections[r->c->n_sections - 1];
-        s->form = BRC_CASE_NULL;
+        struct brc_casefile_place *s = &r->c->sections[r->c->n_sections - 1];
+        s->form = BRC_CASEFILE_NULL;
         s->begin = r->begin;
         s->end = r->end;
         top->key[0] = '\0';
@@ -278,20 +279,20 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
     return take_value(r, text, top->line);
 }
 
-static struct brc_case_place *place_of(struct reader *r, const struct level *level)
+static struct brc_casefile_place *place_of(struct reader *r, const struct level *level)
 {
     return level->place < 0 ? &r->c->root : &r->c->sections[level->place];
 }
 
 static int open_mapping(struct reader *r, const yaml_event_t *event, int line)
 {
-    char name[2 * BRC_CASE_KEY_SIZE];
+    char name[2 * BRC_CASEFILE_KEY_SIZE];
     bool is_flow = event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
     if (r->is_sequence)
         return fail_at(r, line, "a sequence holds plain values, no mappings");
     if (r->depth > 0 && r->level[r->depth - 1].key[0] == '\0')
         return fail_at(r, line, "a key must be a plain word");
-    if (r->depth == BRC_CASE_MAX_LEVELS)
+    if (r->depth == BRC_CASEFILE_MAX_LEVELS)
         return fail_at(r, line, "mappings are nested deeper than 3 levels; join keys as a_b");
     if (r->depth > 0) {
         snprintf(name, sizeof name, "%s%s%s", r->level[0].key, r->depth > 1 ? "." : "",
@@ -299,8 +300,8 @@ static int open_mapping(struct reader *r, const yaml_event_t *event, int line)
         BRC_TRY(add_section(r->ctx, r->c, name, r->level[r->depth - 1].line));
     }
     r->level[r->depth] = (struct level){.place = r->depth > 0 ? (int)r->c->n_sections - 1 : -1};
-    struct brc_case_place *place = place_of(r, &r->level[r->depth]);
-    place->form = is_flow ? BRC_CASE_FLOW : BRC_CASE_BLOCK;
+    struct brc_casefile_place *place = place_of(r, &r->level[r->depth]);
+    place->form = is_flow ? BRC_CASEFILE_FLOW : BRC_CASEFILE_BLOCK;
     place->indent = (int)event->start_mark.column;
     r->begin = byte_at(r, &event->start_mark);
     r->end = r->begin + is_flow;
@@ -312,11 +313,11 @@ static int close_mapping(struct reader *r, const yaml_event_t *event)
 {
     r->depth--;
     const struct level *closed = &r->level[r->depth];
-    struct brc_case_place *place = place_of(r, closed);
+    struct brc_casefile_place *place = place_of(r, closed);
     place->end = r->end;
-    if (place->form == BRC_CASE_FLOW) {
+    if (place->form == BRC_CASEFILE_FLOW) {
         if (!closed->has_values)
-            place->form = BRC_CASE_EMPTY;
+            place->form = BRC_CASEFILE_EMPTY;
         end_value(r, &event->end_mark);
     }
     if (r->depth > 0) {
@@ -433,7 +434,7 @@ static int take_events(struct reader *r, yaml_parser_t *parser)
     return 0;
 }
 
-static int parse_yaml(struct brc_context *ctx, struct brc_case *c, size_t size)
+static int parse_yaml(struct brc_context *ctx, struct brc_casefile *c, size_t size)
 {
     struct reader r = {.ctx = ctx, .c = c};
     yaml_parser_t parser;
@@ -449,8 +450,8 @@ static int parse_yaml(struct brc_context *ctx, struct brc_case *c, size_t size)
 
 /* ---- interface ----------------------------------------------------------------------------- */
 
-int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
-                   struct brc_case *c)
+int brc_casefile_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
+                       struct brc_casefile *c)
 {
     memset(c, 0, sizeof *c);
     BRC_TRY(check_bytes(ctx, path, text, size));
@@ -461,18 +462,18 @@ int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, 
     strcpy(c->path, path);
     memcpy(c->text, text, size);
     BRC_TRY(parse_yaml(ctx, c, size));
-    return brc_case_top_level(ctx, c);
+    return brc_casefile_top_level(ctx, c);
 }
 
-int brc_case_read(struct brc_context *ctx, const char *path, struct brc_case *c)
+int brc_casefile_read(struct brc_context *ctx, const char *path, struct brc_casefile *c)
 {
     memset(c, 0, sizeof *c);
     const struct brc_input in = {
-        .noun = "the case file", .path = path, .largest = BRC_CASE_MAX_BYTES};
+        .noun = "the case file", .path = path, .largest = BRC_CASEFILE_MAX_BYTES};
     char *text;
     size_t size;
     BRC_TRY(brc_input_read(ctx, &in, &text, &size));
-    int code = brc_case_parse(ctx, path, text, size, c);
+    int code = brc_casefile_parse(ctx, path, text, size, c);
     free(text);
     return code;
 }
@@ -481,7 +482,7 @@ static int check_override(struct brc_context *ctx, const char *assignment, const
 {
     const char *where = "--set";
     size_t size = strlen(assignment);
-    if (!equals || size > BRC_CASE_MAX_BYTES)
+    if (!equals || size > BRC_CASEFILE_MAX_BYTES)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: '%.60s' is not of the form section.key=value", where,
                  assignment);
     for (size_t i = 0, n; i < size; i += n) {
@@ -492,9 +493,9 @@ static int check_override(struct brc_context *ctx, const char *assignment, const
     return 0;
 }
 
-int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *assignment)
+int brc_casefile_override(struct brc_context *ctx, struct brc_casefile *c, const char *assignment)
 {
-    char part[3][BRC_CASE_KEY_SIZE] = {"", "", ""};
+    char part[3][BRC_CASEFILE_KEY_SIZE] = {"", "", ""};
     const char *equals = strchr(assignment, '='), *at = assignment;
     int n_parts = 0;
     BRC_TRY(check_override(ctx, assignment, equals));
@@ -504,24 +505,24 @@ int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *a
             BRC_FAIL(ctx, BRC_ERR_USAGE, "--set: '%.60s' is not of the form section.key=value",
                      assignment);
         BRC_TRY(check_name(ctx, at, n, "--set"));
-        snprintf(part[n_parts], BRC_CASE_KEY_SIZE, "%.*s", (int)n, at);
+        snprintf(part[n_parts], BRC_CASEFILE_KEY_SIZE, "%.*s", (int)n, at);
         at += n;
         if (at == equals)
             break;
     }
     const char *name[3] = {n_parts ? part[0] : "", n_parts == 2 ? part[1] : "", part[n_parts]};
-    if (*name[0] && !brc_case_find_section(c, name[0]))
+    if (*name[0] && !brc_casefile_find_section(c, name[0]))
         BRC_TRY(add_section(ctx, c, name[0], 0));
     BRC_TRY(add_entry(ctx, c, name, equals + 1 + strspn(equals + 1, " "), 0));
-    return brc_case_top_level(ctx, c);
+    return brc_casefile_top_level(ctx, c);
 }
 
-const char *brc_case_text(const struct brc_case *c)
+const char *brc_casefile_text(const struct brc_casefile *c)
 {
     return c->text;
 }
 
-void brc_case_free(struct brc_case *c)
+void brc_casefile_free(struct brc_casefile *c)
 {
     for (size_t i = 0; i < c->n; i++)
         free(c->entries[i].text);

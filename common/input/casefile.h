@@ -16,32 +16,32 @@
 #include "common/input/params.h"
 
 enum {
-    BRC_CASE_VERSION = 1,
-    BRC_CASE_MAX_BYTES = 1 << 20,
-    BRC_CASE_MAX_LEVELS = 3,
-    BRC_CASE_MAX_ENTRIES = 4096,
-    BRC_CASE_KEY_SIZE = 64,
-    BRC_CASE_WHERE_SIZE = 256,
-    BRC_CASE_MAX_MODELS = 16
+    BRC_CASEFILE_VERSION = 1,
+    BRC_CASEFILE_MAX_BYTES = 1 << 20,
+    BRC_CASEFILE_MAX_LEVELS = 3,
+    BRC_CASEFILE_MAX_ENTRIES = 4096,
+    BRC_CASEFILE_KEY_SIZE = 64,
+    BRC_CASEFILE_WHERE_SIZE = 256,
+    BRC_CASEFILE_MAX_MODELS = 16
 };
 
 /* Keys of the top level. */
-#define BRC_CASE_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3) \
-    INT(breccia, NULL, "[1, 1]", "version of the case format")      \
-    TEXT(title, "", "one line for headings")                        \
-    TEXT(model, "", "contact model that `run` uses")                \
+#define BRC_CASEFILE_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3) \
+    INT(breccia, NULL, "[1, 1]", "version of the case format")          \
+    TEXT(title, "", "one line for headings")                            \
+    TEXT(model, "", "contact model that `run` uses")                    \
     TEXT(models, "", "contact models that `compare` uses; empty: all")
 
-struct brc_case_params {
-    BRC_PARAM_MEMBERS(BRC_CASE_PARAMS)
+struct brc_casefile_params {
+    BRC_PARAM_MEMBERS(BRC_CASEFILE_PARAMS)
 };
-extern const struct brc_param_list brc_case_param_list;
+extern const struct brc_param_list brc_casefile_param_list;
 
 /* One key with its text. */
-struct brc_case_entry {
-    char section[BRC_CASE_KEY_SIZE]; /* "" at the top level */
-    char key[BRC_CASE_KEY_SIZE];     /* nested keys joined by _ */
-    char parent[BRC_CASE_KEY_SIZE];  /* a of a: {rule: x}, else "" */
+struct brc_casefile_entry {
+    char section[BRC_CASEFILE_KEY_SIZE]; /* "" at the top level */
+    char key[BRC_CASEFILE_KEY_SIZE];     /* nested keys joined by _ */
+    char parent[BRC_CASEFILE_KEY_SIZE];  /* a of a: {rule: x}, else "" */
     char *text;
     int line;          /* 1 is the first; 0: not from the file */
     bool is_override;  /* from --set */
@@ -52,76 +52,78 @@ struct brc_case_entry {
 };
 
 /* How a mapping stands in the file. */
-enum brc_case_form {
-    BRC_CASE_ABSENT, /* by --set only */
-    BRC_CASE_NULL,   /* `vgcm:` */
-    BRC_CASE_EMPTY,  /* `vgcm: {}` */
-    BRC_CASE_FLOW,   /* `vgcm: {e_bar: 48.8 GPa}` */
-    BRC_CASE_BLOCK   /* keys on lines of their own */
+enum brc_casefile_form {
+    BRC_CASEFILE_ABSENT, /* by --set only */
+    BRC_CASEFILE_NULL,   /* `vgcm:` */
+    BRC_CASEFILE_EMPTY,  /* `vgcm: {}` */
+    BRC_CASEFILE_FLOW,   /* `vgcm: {e_bar: 48.8 GPa}` */
+    BRC_CASEFILE_BLOCK   /* keys on lines of their own */
 };
 
 /* Where a section, or a nested mapping "section.key", was opened. */
-struct brc_case_place {
-    char name[2 * BRC_CASE_KEY_SIZE];
+struct brc_casefile_place {
+    char name[2 * BRC_CASEFILE_KEY_SIZE];
     int line; /* 0: by --set only */
-    enum brc_case_form form;
+    enum brc_casefile_form form;
     size_t begin, end; /* bytes: of a null value; else end is behind the last value */
     int indent;        /* column of the keys */
 };
 
-/* A case file as read. Freed by brc_case_free, also after a failed read. */
-struct brc_case {
+/* A case file as read. Freed by brc_casefile_free, also after a failed read. */
+struct brc_casefile {
     char *path;
-    char *text; /* raw, see brc_case_text */
-    struct brc_case_place root;
-    struct brc_case_entry *entries;
+    char *text; /* raw, see brc_casefile_text */
+    struct brc_casefile_place root;
+    struct brc_casefile_entry *entries;
     size_t n, cap;
-    struct brc_case_place *sections;
+    struct brc_casefile_place *sections;
     size_t n_sections, cap_sections;
-    struct brc_case_params head; /* top-level keys */
-    size_t n_models;             /* names in `models`; 0: all */
-    char models[BRC_CASE_MAX_MODELS][BRC_CASE_KEY_SIZE];
+    struct brc_casefile_params head; /* top-level keys */
+    size_t n_models;                 /* names in `models`; 0: all */
+    char models[BRC_CASEFILE_MAX_MODELS][BRC_CASEFILE_KEY_SIZE];
 };
 
 /* Reads a file into a case, which need not be initialised, and judges the top level. */
-int brc_case_read(struct brc_context *ctx, const char *path, struct brc_case *c);
+int brc_casefile_read(struct brc_context *ctx, const char *path, struct brc_casefile *c);
 /* The same from memory; path names the text in messages. */
-int brc_case_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
-                   struct brc_case *c);
+int brc_casefile_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
+                       struct brc_casefile *c);
 /* Applies "section.key=text" (or "title=text") of the command line; the last one of a key holds. */
-int brc_case_override(struct brc_context *ctx, struct brc_case *c, const char *assignment);
+int brc_casefile_override(struct brc_context *ctx, struct brc_casefile *c, const char *assignment);
 /* Fills values from the list's defaults, the section's entries and the overrides. Unknown and
  * missing keys, bad values and a key given twice are errors. */
-int brc_case_section(struct brc_context *ctx, const struct brc_case *c, const char *section,
-                     struct brc_param_list list, void *values);
+int brc_casefile_section(struct brc_context *ctx, const struct brc_casefile *c, const char *section,
+                         struct brc_param_list list, void *values);
 /* Judges and fills the keys of the top level, overrides included. */
-int brc_case_top_level(struct brc_context *ctx, struct brc_case *c);
+int brc_casefile_top_level(struct brc_context *ctx, struct brc_casefile *c);
 /* Where a section was opened, NULL when neither the file nor an override has it. */
-const struct brc_case_place *brc_case_find_section(const struct brc_case *c, const char *section);
+const struct brc_casefile_place *brc_casefile_find_section(const struct brc_casefile *c,
+                                                           const char *section);
 /* The entry that gives a key its value, NULL when it has its default. */
-const struct brc_case_entry *brc_case_find_entry(const struct brc_case *c, const char *section,
-                                                 const char *key, struct brc_param_list list);
+const struct brc_casefile_entry *brc_casefile_find_entry(const struct brc_casefile *c,
+                                                         const char *section, const char *key,
+                                                         struct brc_param_list list);
 /* "file.yaml:12", "file.yaml" for line 0, or "--set" for an override; returns where. */
-const char *brc_case_where(const struct brc_case *c, int line, bool is_override,
-                           char where[BRC_CASE_WHERE_SIZE]);
+const char *brc_casefile_where(const struct brc_casefile *c, int line, bool is_override,
+                               char where[BRC_CASEFILE_WHERE_SIZE]);
 /* Judges the section names, after all sections were read. */
-int brc_case_finish(struct brc_context *ctx, const struct brc_case *c, const char *const *sections,
-                    size_t n);
+int brc_casefile_finish(struct brc_context *ctx, const struct brc_casefile *c,
+                        const char *const *sections, size_t n);
 /* The file's bytes; overrides are no part of them. */
-const char *brc_case_text(const struct brc_case *c);
+const char *brc_casefile_text(const struct brc_casefile *c);
 /* Gives a key, as the section's list calls it, this value in the text of a case without overrides:
  * in its place where the file gives the key, else as the last of its section. All other bytes stay.
  * The case is then the one that the new text makes. */
-int brc_case_write(struct brc_context *ctx, struct brc_case *c, const char *section,
-                   const char *key, struct brc_param_list list, const char *value);
+int brc_casefile_write(struct brc_context *ctx, struct brc_casefile *c, const char *section,
+                       const char *key, struct brc_param_list list, const char *value);
 /* Takes a key out of the text of a case without overrides, with the line that it has to itself and
  * the comment on it. */
-int brc_case_remove(struct brc_context *ctx, struct brc_case *c, const char *section,
-                    const char *key, struct brc_param_list list);
+int brc_casefile_remove(struct brc_context *ctx, struct brc_casefile *c, const char *section,
+                        const char *key, struct brc_param_list list);
 /* Valid UTF-8 without control characters, but for line breaks and tabs. */
-bool brc_case_is_text(const char *text);
+bool brc_casefile_is_text(const char *text);
 /* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
-const char *brc_case_key(const struct brc_case_entry *e, struct brc_param_list list);
-void brc_case_free(struct brc_case *c);
+const char *brc_casefile_key(const struct brc_casefile_entry *e, struct brc_param_list list);
+void brc_casefile_free(struct brc_casefile *c);
 
 #endif

@@ -5,11 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static int check_version(struct brc_context *ctx, const struct brc_case *c)
+static int check_version(struct brc_context *ctx, const struct brc_casefile *c)
 {
-    const struct brc_case_entry *e = brc_case_find_entry(c, "", "breccia", brc_case_param_list);
+    const struct brc_casefile_entry *e =
+        brc_casefile_find_entry(c, "", "breccia", brc_casefile_param_list);
     char here[16];
-    snprintf(here, sizeof here, "%d", BRC_CASE_VERSION);
+    snprintf(here, sizeof here, "%d", BRC_CASEFILE_VERSION);
     if (!e)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: breccia: required key is missing; a case file starts with the version of "
@@ -25,55 +26,56 @@ static int check_version(struct brc_context *ctx, const struct brc_case *c)
 }
 
 /* Keys and sections that stand in each other's place. */
-static int check_top_level(struct brc_context *ctx, const struct brc_case *c)
+static int check_top_level(struct brc_context *ctx, const struct brc_casefile *c)
 {
-    char where[BRC_CASE_WHERE_SIZE];
+    char where[BRC_CASEFILE_WHERE_SIZE];
     for (size_t i = 0; i < c->n_sections; i++)
-        if (brc_params_find(brc_case_param_list, c->sections[i].name))
+        if (brc_params_find(brc_casefile_param_list, c->sections[i].name))
             BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: takes a text, not a mapping",
-                     brc_case_where(c, c->sections[i].line, c->sections[i].line == 0, where),
+                     brc_casefile_where(c, c->sections[i].line, c->sections[i].line == 0, where),
                      c->sections[i].name);
     for (size_t i = 0; i < c->n; i++) {
-        const struct brc_case_entry *e = &c->entries[i];
-        if (*e->section || brc_params_find(brc_case_param_list, e->key))
+        const struct brc_casefile_entry *e = &c->entries[i];
+        if (*e->section || brc_params_find(brc_casefile_param_list, e->key))
             continue;
-        const char *nearest = brc_params_nearest(brc_case_param_list, e->key);
+        const char *nearest = brc_params_nearest(brc_casefile_param_list, e->key);
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: %s: unknown key of the top level; allowed breccia, title, model, models and "
                  "sections, which are mappings `%s: {key: value}`%s%s%s",
-                 brc_case_where(c, e->line, e->is_override, where), e->key, e->key,
+                 brc_casefile_where(c, e->line, e->is_override, where), e->key, e->key,
                  nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
     }
     return 0;
 }
 
 /* Splits `models` at commas and blanks. */
-static int split_models(struct brc_context *ctx, struct brc_case *c)
+static int split_models(struct brc_context *ctx, struct brc_casefile *c)
 {
-    char where[BRC_CASE_WHERE_SIZE];
-    const struct brc_case_entry *e = brc_case_find_entry(c, "", "models", brc_case_param_list);
+    char where[BRC_CASEFILE_WHERE_SIZE];
+    const struct brc_casefile_entry *e =
+        brc_casefile_find_entry(c, "", "models", brc_casefile_param_list);
     c->n_models = 0;
     for (const char *text = c->head.models; *(text += strspn(text, ", ")) != '\0';) {
         size_t n = strcspn(text, ", ");
-        if (c->n_models == BRC_CASE_MAX_MODELS || n >= BRC_CASE_KEY_SIZE)
+        if (c->n_models == BRC_CASEFILE_MAX_MODELS || n >= BRC_CASEFILE_KEY_SIZE)
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "%s: models: more than %d names, or a name of more than %d "
                      "characters",
-                     c->path, BRC_CASE_MAX_MODELS, BRC_CASE_KEY_SIZE - 1);
-        snprintf(c->models[c->n_models++], BRC_CASE_KEY_SIZE, "%.*s", (int)n, text);
+                     c->path, BRC_CASEFILE_MAX_MODELS, BRC_CASEFILE_KEY_SIZE - 1);
+        snprintf(c->models[c->n_models++], BRC_CASEFILE_KEY_SIZE, "%.*s", (int)n, text);
         text += n;
         for (size_t k = 0; k + 1 < c->n_models; k++)
             if (strcmp(c->models[k], c->models[c->n_models - 1]) == 0)
                 BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: models: %s is named twice; name each model once",
-                         brc_case_where(c, e->line, e->is_override, where), c->models[k]);
+                         brc_casefile_where(c, e->line, e->is_override, where), c->models[k]);
     }
     return 0;
 }
 
-int brc_case_top_level(struct brc_context *ctx, struct brc_case *c)
+int brc_casefile_top_level(struct brc_context *ctx, struct brc_casefile *c)
 {
     BRC_TRY(check_version(ctx, c));
     BRC_TRY(check_top_level(ctx, c));
-    BRC_TRY(brc_case_section(ctx, c, "", brc_case_param_list, &c->head));
+    BRC_TRY(brc_casefile_section(ctx, c, "", brc_casefile_param_list, &c->head));
     return split_models(ctx, c);
 }

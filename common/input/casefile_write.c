@@ -79,31 +79,31 @@ static char *edited_text(struct brc_context *ctx, const char *old, const struct 
 }
 
 /* Makes the case anew from the edited text. */
-static int apply(struct brc_context *ctx, struct brc_case *c, const struct edit *e)
+static int apply(struct brc_context *ctx, struct brc_casefile *c, const struct edit *e)
 {
-    struct brc_case fresh;
+    struct brc_casefile fresh;
     char *text = edited_text(ctx, c->text, e);
     if (!text)
         return BRC_ERR_MEMORY;
-    int code = brc_case_parse(ctx, c->path, text, strlen(text), &fresh);
+    int code = brc_casefile_parse(ctx, c->path, text, strlen(text), &fresh);
     free(text);
-    brc_case_free(code == 0 ? c : &fresh);
+    brc_casefile_free(code == 0 ? c : &fresh);
     if (code == 0)
         *c = fresh;
     return code;
 }
 
 /* `key: value` behind the last key of a mapping. */
-static int append(struct brc_context *ctx, struct brc_case *c, const struct brc_case_place *place,
-                  const char *key, const char *value)
+static int append(struct brc_context *ctx, struct brc_casefile *c,
+                  const struct brc_casefile_place *place, const char *key, const char *value)
 {
     size_t at = place->end;
-    if (place->form == BRC_CASE_NULL)
+    if (place->form == BRC_CASEFILE_NULL)
         return apply(ctx, c,
                      &(struct edit){place->begin, at, NULL, 1, {"{", key, ": ", value, "}"}});
-    if (place->form == BRC_CASE_EMPTY)
+    if (place->form == BRC_CASEFILE_EMPTY)
         return apply(ctx, c, &(struct edit){at, at, NULL, 0, {key, ": ", value}});
-    if (place->form == BRC_CASE_FLOW)
+    if (place->form == BRC_CASEFILE_FLOW)
         return apply(ctx, c, &(struct edit){at, at, ",", 1, {key, ": ", value}});
     at += strcspn(c->text + at, "\r\n");
     const char *line = c->text[at] == '\r' ? "\r\n" : "\n";
@@ -111,15 +111,15 @@ static int append(struct brc_context *ctx, struct brc_case *c, const struct brc_
 }
 
 /* The section, empty, behind the last one; its keys then stand in braces. */
-static int add_to_section(struct brc_context *ctx, struct brc_case *c, const char *section,
+static int add_to_section(struct brc_context *ctx, struct brc_casefile *c, const char *section,
                           const char *key, const char *value)
 {
     if (!*section)
         return append(ctx, c, &c->root, key, value);
-    const struct brc_case_place *place = brc_case_find_section(c, section);
+    const struct brc_casefile_place *place = brc_casefile_find_section(c, section);
     if (!place) {
         BRC_TRY(append(ctx, c, &c->root, section, "{}"));
-        place = brc_case_find_section(c, section);
+        place = brc_casefile_find_section(c, section);
     }
     if (!place)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "the section %s was added, but is not found", section);
@@ -128,18 +128,18 @@ static int add_to_section(struct brc_context *ctx, struct brc_case *c, const cha
 
 /* A key that the file gives nowhere; `rule` of a nested mapping stands for the mapping's own key.
  */
-static int add(struct brc_context *ctx, struct brc_case *c, const char *section, const char *key,
-               const char *value)
+static int add(struct brc_context *ctx, struct brc_casefile *c, const char *section,
+               const char *key, const char *value)
 {
-    char nested[2 * BRC_CASE_KEY_SIZE];
+    char nested[2 * BRC_CASEFILE_KEY_SIZE];
     snprintf(nested, sizeof nested, "%s.%s", section, key);
-    const struct brc_case_place *place = brc_case_find_section(c, nested);
+    const struct brc_casefile_place *place = brc_casefile_find_section(c, nested);
     return place ? append(ctx, c, place, "rule", value)
                  : add_to_section(ctx, c, section, key, value);
 }
 
 /* Is the entry all that its mapping holds? */
-static bool is_alone(const struct brc_case *c, const struct brc_case_entry *e)
+static bool is_alone(const struct brc_casefile *c, const struct brc_casefile_entry *e)
 {
     const char *name = e->place < 0 ? "" : c->sections[e->place].name;
     size_t n = strlen(name);
@@ -153,14 +153,14 @@ static bool is_alone(const struct brc_case *c, const struct brc_case_entry *e)
 }
 
 /* From its key on to the comma behind it, where there is one. */
-static struct edit flow_piece(const char *text, const struct brc_case_entry *e)
+static struct edit flow_piece(const char *text, const struct brc_casefile_entry *e)
 {
     size_t end = e->end + strspn(text + e->end, " \t\r\n");
     return (struct edit){e->key_begin, text[end] == ',' ? end + 1 : e->end, NULL, 0, {""}};
 }
 
 /* Its whole lines. */
-static struct edit block_piece(const char *text, const struct brc_case_entry *e)
+static struct edit block_piece(const char *text, const struct brc_casefile_entry *e)
 {
     size_t begin = e->key_begin, end = e->end + strcspn(text + e->end, "\n");
     while (begin > 0 && text[begin - 1] == ' ')
@@ -168,23 +168,23 @@ static struct edit block_piece(const char *text, const struct brc_case_entry *e)
     return (struct edit){begin, end + (text[end] == '\n'), NULL, 0, {""}};
 }
 
-int brc_case_remove(struct brc_context *ctx, struct brc_case *c, const char *section,
-                    const char *key, struct brc_param_list list)
+int brc_casefile_remove(struct brc_context *ctx, struct brc_casefile *c, const char *section,
+                        const char *key, struct brc_param_list list)
 {
-    const struct brc_case_entry *e = brc_case_find_entry(c, section, key, list);
+    const struct brc_casefile_entry *e = brc_casefile_find_entry(c, section, key, list);
     if (!e)
         return 0;
-    const struct brc_case_place *place = e->place < 0 ? &c->root : &c->sections[e->place];
-    struct edit edit = place->form == BRC_CASE_FLOW ? flow_piece(c->text, e)
+    const struct brc_casefile_place *place = e->place < 0 ? &c->root : &c->sections[e->place];
+    struct edit edit = place->form == BRC_CASEFILE_FLOW ? flow_piece(c->text, e)
                        : is_alone(c, e) ? (struct edit){e->key_begin, e->end, NULL, 0, {"{}"}}
                                         : block_piece(c->text, e);
     return apply(ctx, c, &edit);
 }
 
-int brc_case_write(struct brc_context *ctx, struct brc_case *c, const char *section,
-                   const char *key, struct brc_param_list list, const char *value)
+int brc_casefile_write(struct brc_context *ctx, struct brc_casefile *c, const char *section,
+                       const char *key, struct brc_param_list list, const char *value)
 {
-    const struct brc_case_entry *old = brc_case_find_entry(c, section, key, list);
+    const struct brc_casefile_entry *old = brc_casefile_find_entry(c, section, key, list);
     char *text = quote(ctx, value);
     int code = BRC_ERR_MEMORY;
     if (text && old)

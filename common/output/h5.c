@@ -82,17 +82,17 @@ static int part_path(struct brc_context *ctx, const char *path, char temporary[P
 }
 
 /* A new file in memory: HDF5 crashes when it cannot write to a full disk. In the oldest format:
- * from 1.8 on the superblock of an image has a wrong checksum. Integrity is the seal's. */
-int brc_h5_create(struct brc_context *ctx, const char *path, const struct brc_seal_kind *seal,
+ * from 1.8 on the superblock of an image has a wrong checksum. Integrity is the header's. */
+int brc_h5_create(struct brc_context *ctx, const char *path, const struct brc_checksum_kind *header,
                   struct brc_h5_file *f)
 {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     hid_t how = without_times(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_userblock(how, BRC_SEAL_SIZE);
+    H5Pset_userblock(how, BRC_CHECKSUM_SIZE);
     H5Pset_fapl_core(access, CORE_STEP, false);
     H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
     hid_t id = H5Fcreate(path, H5F_ACC_TRUNC, how, access);
-    *f = (struct brc_h5_file){ctx, path, id, seal};
+    *f = (struct brc_h5_file){ctx, path, id, header};
     H5Pclose(access);
     H5Pclose(how);
     return id < 0 ? brc_h5_write_failed(f, "a new file") : 0;
@@ -114,10 +114,10 @@ static int take_image(const struct brc_h5_file *f, char **image, size_t *n)
 
 static int write_file(const struct brc_h5_file *f, const char *path, const char *image, size_t n)
 {
-    char seal[BRC_SEAL_SIZE];
+    char header[BRC_CHECKSUM_SIZE];
     FILE *file = fopen(path, "wb");
-    brc_seal_make(seal, f->seal, image, n);
-    bool is_good = file && fwrite(seal, sizeof seal, 1, file) == 1;
+    brc_checksum_make(header, f->header, image, n);
+    bool is_good = file && fwrite(header, sizeof header, 1, file) == 1;
     is_good = is_good && fwrite(image, n, 1, file) == 1 && fflush(file) == 0;
     int reason = errno;
     if (file && fclose(file) != 0 && is_good) {
@@ -175,12 +175,12 @@ int brc_h5_finish(struct brc_h5_file *f, int code)
     return code;
 }
 
-int brc_h5_open(struct brc_context *ctx, const char *path, const struct brc_seal_kind *seal,
+int brc_h5_open(struct brc_context *ctx, const char *path, const struct brc_checksum_kind *header,
                 struct brc_h5_file *f)
 {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    *f = (struct brc_h5_file){ctx, path, H5I_INVALID_HID, seal};
-    BRC_TRY(brc_seal_check(ctx, path, seal));
+    *f = (struct brc_h5_file){ctx, path, H5I_INVALID_HID, header};
+    BRC_TRY(brc_checksum_check(ctx, path, header));
     f->id = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (f->id < 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: it is not an HDF5 file", path);

@@ -5,14 +5,14 @@
 #define BRC_H5_H
 
 #include "common/base/fields.h"
-#include "common/output/seal.h"
+#include "common/output/checksum_header.h"
 
 /* A file being written or read; the path is for messages and must live as long. */
 struct brc_h5_file {
     struct brc_context *ctx;
     const char *path;
     int64_t id;
-    const struct brc_seal_kind *seal;
+    const struct brc_checksum_kind *header;
 };
 
 /* A dataset of shape (rows, width), or (rows) where is_flat says so. Texts may be NULL: then the
@@ -27,15 +27,15 @@ struct brc_h5_array {
     const char *row; /* what a row is, for the attribute `shape` */
 };
 
-/* Writes into memory; brc_h5_finish seals that, writes it beside path, PATH.part, forces it to disk
- * and renames it, or after a failure (code != 0, which it returns) removes it. So the file appears
- * complete or not at all, and HDF5 never meets a full disk. */
-int brc_h5_create(struct brc_context *ctx, const char *path, const struct brc_seal_kind *seal,
+/* Writes into memory; brc_h5_finish header that, writes it beside path, PATH.part, forces it to
+ * disk and renames it, or after a failure (code != 0, which it returns) removes it. So the file
+ * appears complete or not at all, and HDF5 never meets a full disk. */
+int brc_h5_create(struct brc_context *ctx, const char *path, const struct brc_checksum_kind *header,
                   struct brc_h5_file *f);
 int brc_h5_finish(struct brc_h5_file *f, int code);
 /* A file that is not as it was written is refused before HDF5 sees it: HDF5 does not stand damaged
  * files. */
-int brc_h5_open(struct brc_context *ctx, const char *path, const struct brc_seal_kind *seal,
+int brc_h5_open(struct brc_context *ctx, const char *path, const struct brc_checksum_kind *header,
                 struct brc_h5_file *f);
 void brc_h5_close(struct brc_h5_file *f);
 

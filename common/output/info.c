@@ -3,7 +3,7 @@
 
 #include "common/input/input_file.h"
 #include "common/output/io_h5.h"
-#include "common/output/seal.h"
+#include "common/output/checksum_header.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -117,7 +117,7 @@ static int print_all(const struct brc_h5_file *f, FILE *out)
     free(program);
     BRC_TRY(brc_h5_visit(f, find_step, &step));
     fprintf(out, "%s: %s of breccia, step %.0f\n\n", f->path,
-            f->seal == &brc_seal_frame ? "frame (VTKHDF)" : "saved state", step);
+            f->header == &brc_checksum_frame ? "frame (VTKHDF)" : "saved state", step);
     BRC_TRY(brc_h5_visit(f, print_texts, &i));
     BRC_TRY(brc_h5_visit(f, list_group, &i));
     for (; i.now < i.n_groups; i.now++) {
@@ -129,15 +129,16 @@ static int print_all(const struct brc_h5_file *f, FILE *out)
 
 int brc_info_print(struct brc_context *ctx, FILE *out, const char *path)
 {
-    static const struct brc_seal_kind *const kinds[] = {&brc_seal_state, &brc_seal_frame};
+    static const struct brc_checksum_kind *const kinds[] = {&brc_checksum_state,
+                                                            &brc_checksum_frame};
     struct brc_h5_file f;
     const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
-    const struct brc_seal_kind *kind = NULL;
+    const struct brc_checksum_kind *kind = NULL;
     FILE *file;
     BRC_TRY(brc_input_open(ctx, &in, &file, NULL));
     fclose(file);
     for (int i = 0; i < 2 && !kind; i++)
-        kind = brc_seal_is_there(path, kinds[i]) ? kinds[i] : NULL;
+        kind = brc_checksum_is_there(path, kinds[i]) ? kinds[i] : NULL;
     if (!kind)
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "%s is neither a saved state nor a frame of breccia, has lost its first bytes, or "

@@ -154,7 +154,7 @@ static int write_identity(const struct brc_h5_file *f, const struct brc_sim *sim
     char hash[17], format[16], specimen[17];
     hash_text(sim, hash);
     specimen_text(sim, specimen);
-    snprintf(format, sizeof format, "%d", brc_seal_state.format);
+    snprintf(format, sizeof format, "%d", brc_checksum_state.format);
     const struct brc_h5_text texts[] = {{"format", format},
                                         {"model", sim->model.name},
                                         {"state_hash", hash},
@@ -183,7 +183,7 @@ int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
     struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens};
     for (int i = 0; i < 2; i++)
         BRC_TRY(brc_contacts_pack(ctx, sets[i]));
-    int code = brc_h5_create(ctx, path, &brc_seal_state, &f);
+    int code = brc_h5_create(ctx, path, &brc_checksum_state, &f);
     if (code == 0)
         code = brc_h5_finish(&f, write_all(&f, sim, extra));
     for (int i = 0; i < 2; i++) {
@@ -243,7 +243,7 @@ int brc_h5_load(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra)
 {
     struct brc_h5_file f;
-    BRC_TRY(brc_h5_open(ctx, path, &brc_seal_state, &f));
+    BRC_TRY(brc_h5_open(ctx, path, &brc_checksum_state, &f));
     int code = read_all(&f, sim, extra);
     brc_h5_close(&f);
     return code;
@@ -253,7 +253,7 @@ int brc_h5_load_table(struct brc_context *ctx, const char *path, struct brc_stat
 {
     struct brc_h5_file f;
     part->is_fixed = false;
-    BRC_TRY(brc_h5_open(ctx, path, &brc_seal_state, &f));
+    BRC_TRY(brc_h5_open(ctx, path, &brc_checksum_state, &f));
     int code = read_part(&f, part);
     brc_h5_close(&f);
     return code;
@@ -263,7 +263,7 @@ int brc_h5_read_text(struct brc_context *ctx, const char *path, const char *name
 {
     struct brc_h5_file f;
     *text = NULL;
-    BRC_TRY(brc_h5_open(ctx, path, &brc_seal_state, &f));
+    BRC_TRY(brc_h5_open(ctx, path, &brc_checksum_state, &f));
     int code = read_text(&f, name, text);
     brc_h5_close(&f);
     return code;

@@ -95,7 +95,7 @@ int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mes
                  const struct brc_table *whole, const struct brc_h5_text *texts, int n_texts)
 {
     struct brc_h5_file f;
-    BRC_TRY(brc_h5_create(ctx, path, &brc_seal_frame, &f));
+    BRC_TRY(brc_h5_create(ctx, path, &brc_checksum_frame, &f));
     int code = put_mesh(&f, m, whole);
     if (code == 0)
         code = brc_h5_put_provenance(&f, texts, n_texts);

@@ -8,7 +8,7 @@
  * what one process has no use for: a home folder, room for session files in the temporary folder,
  * network hardware; many starts at once fail now and then. So that there are several ranks is read
  * from what launchers tell each process (Open MPI; PMIx: prte, srun; PMI: MPICH, Intel, srun;
- * MVAPICH). A batch system's own variables (SLURM_*) stand in serial jobs, too. */
+ * MVAPICH). A batch system's own variables (SLURM_*) stand in serial cases, too. */
 static bool comm_is_launched(void)
 {
     static const char *const mark[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "PMI_RANK",

@@ -199,7 +199,7 @@ static double unbalanced_ratio(const struct brc_sim *sim)
 }
 
 /* The start is over when the field of velocities is that of steady loading. */
-static bool is_settled(const struct brc_sim *sim)
+static bool is_steady(const struct brc_sim *sim)
 {
     bool is_calm =
         sim->step >= LEAST_START && sim->rig.unbalanced < 0.5 * DAMAGING * sim->rig.params.target;
@@ -214,7 +214,7 @@ static void watch_elastic(struct brc_sim *sim)
     double kinetic = fmax(sim->ledger.kinetic, DBL_MIN) / (rig->rate * rig->rate);
     double weight = rig->kinetic_elastic > 0 ? ELASTIC_WEIGHT : 1;
     rig->kinetic_elastic += weight * (kinetic - rig->kinetic_elastic);
-    bool is_shaken = rig->is_settled && rig->unbalanced > DAMAGING * rig->params.target;
+    bool is_shaken = rig->is_steady && rig->unbalanced > DAMAGING * rig->params.target;
     if (is_shaken || sim->events.table.n > 0)
         rig->strain_onset = rig->strain;
 }
@@ -246,7 +246,7 @@ static double wanted_rate(const struct brc_sim *sim)
     double target = rig->params.target / sim->dt;
     if (rig->strain_onset == 0)
         return fmax(rig->rate, ELASTIC * target * rig->strain);
-    double base = target * (rig->is_lost ? rig->strain : rig->strain_onset);
+    double base = target * (rig->is_post_peak ? rig->strain : rig->strain_onset);
     return base * brake(sim, base);
 }
 
@@ -257,7 +257,7 @@ static void choose_change(struct brc_sim *sim)
         rig->strain_onset = 0;
     if (rig->strain_onset == 0)
         watch_elastic(sim);
-    rig->is_lost = rig->force < (rig->is_lost ? LOAD_FOUND : LOAD_LOST) * rig->force_peak;
+    rig->is_post_peak = rig->force < (rig->is_post_peak ? LOAD_FOUND : LOAD_LOST) * rig->force_peak;
     double rate = fmin(fmax(wanted_rate(sim), rig->params.rate_min), rig->params.rate_max);
     rig->change = fmin(fmax(log(rate / rig->rate), -RATE_FALL), RATE_RISE);
 }
@@ -301,7 +301,7 @@ static void change_rate(struct brc_sim *sim)
     double factor = exp(sim->rig.change);
     if (sim->rig.change == 0)
         return;
-    if (sim->has_mean)
+    if (sim->tracks_mean)
         change_velocities(sim, (factor - 1) * part_of_rate(sim));
     sim->rig.rate *= factor;
 }
@@ -375,7 +375,7 @@ int brc_rig_step(struct brc_sim *sim)
     rig->strain_sum += rig->strain;
     if (sim->step % UNBALANCED_STEPS == 0) {
         rig->unbalanced = unbalanced_ratio(sim);
-        rig->is_settled = rig->is_settled || is_settled(sim);
+        rig->is_steady = rig->is_steady || is_steady(sim);
     }
     if (sim->step >= LEAST_START && rig->params.loading == BRC_LOADING_ADAPTIVE)
         choose_change(sim);

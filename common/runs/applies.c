@@ -8,7 +8,7 @@ enum { TEXT_SIZE = 320 };
 
 /* One part "section.key=a|b" of a clause. */
 struct part {
-    char section[BRC_CASE_KEY_SIZE], key[BRC_CASE_KEY_SIZE];
+    char section[BRC_CASEFILE_KEY_SIZE], key[BRC_CASEFILE_KEY_SIZE];
     const char *choices; /* behind the = */
     size_t length;       /* of the choices */
 };
@@ -17,7 +17,7 @@ struct part {
 static int find_section(const char *name, struct brc_param_list *list)
 {
     const char *section;
-    for (int i = 0; brc_job_section(i, &section, list); i++)
+    for (int i = 0; brc_case_section(i, &section, list); i++)
         if (strcmp(section, name) == 0)
             return i;
     return -1;
@@ -60,7 +60,7 @@ static const char *value_text(const struct brc_param *p, const void *values, cha
     return is_zero ? "0" : brc_params_text(p, values, text, TEXT_SIZE);
 }
 
-static int holds(struct brc_context *ctx, const struct brc_job *job, const struct part *part,
+static int holds(struct brc_context *ctx, const struct brc_case *run_case, const struct part *part,
                  bool *does)
 {
     char text[TEXT_SIZE];
@@ -70,11 +70,11 @@ static int holds(struct brc_context *ctx, const struct brc_job *job, const struc
     if (!p)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "'%s.%s' is not a key that another one can hang on",
                  part->section, part->key);
-    *does = is_one_of(value_text(p, brc_job_values(job, i), text), part);
+    *does = is_one_of(value_text(p, brc_case_values(run_case, i), text), part);
     return 0;
 }
 
-int brc_applies(struct brc_context *ctx, const struct brc_job *job, const char *section,
+int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                 const struct brc_param *p, const char **clause)
 {
     *clause = NULL;
@@ -88,7 +88,7 @@ int brc_applies(struct brc_context *ctx, const struct brc_job *job, const char *
             if (!at)
                 BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s.%s: cannot read '%s'", section, p->key,
                          p->applies);
-            BRC_TRY(holds(ctx, job, &part, &does));
+            BRC_TRY(holds(ctx, run_case, &part, &does));
             is_true = is_true || does;
             is_more = strncmp(at, " or ", 4) == 0;
             at += is_more ? 4 : strspn(at, ", ");
@@ -102,15 +102,15 @@ int brc_applies(struct brc_context *ctx, const struct brc_job *job, const char *
 }
 
 /* Whether --set gives a key that the clause hangs on. */
-static bool is_overridden(const struct brc_job *job, const char *section, const char *clause)
+static bool is_overridden(const struct brc_case *run_case, const char *section, const char *clause)
 {
     struct part part;
     struct brc_param_list list;
     for (const char *at = clause;; at += 4) {
         at = take_part(at, section, &part);
         find_section(part.section, &list);
-        const struct brc_case_entry *e =
-            brc_case_find_entry(&job->file, part.section, part.key, list);
+        const struct brc_casefile_entry *e =
+            brc_casefile_find_entry(&run_case->file, part.section, part.key, list);
         if (e && e->is_override)
             return true;
         if (strncmp(at, " or ", 4) != 0)
@@ -133,9 +133,9 @@ static bool mentions(const char *applies, const char *section, const struct part
 }
 
 /* Keys of the section that apply by the same deciding key: "a, b". */
-static int list_others(struct brc_context *ctx, const struct brc_job *job, const char *section,
-                       struct brc_param_list list, const struct part *decider, char *text,
-                       size_t size)
+static int list_others(struct brc_context *ctx, const struct brc_case *run_case,
+                       const char *section, struct brc_param_list list, const struct part *decider,
+                       char *text, size_t size)
 {
     size_t used = 0;
     text[0] = '\0';
@@ -143,7 +143,7 @@ static int list_others(struct brc_context *ctx, const struct brc_job *job, const
         const char *clause;
         if (!mentions(list.params[i].applies, section, decider))
             continue;
-        BRC_TRY(brc_applies(ctx, job, section, &list.params[i], &clause));
+        BRC_TRY(brc_applies(ctx, run_case, section, &list.params[i], &clause));
         if (!clause && used < size)
             used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
                                      list.params[i].key);
@@ -151,49 +151,52 @@ static int list_others(struct brc_context *ctx, const struct brc_job *job, const
     return 0;
 }
 
-static int refuse(struct brc_context *ctx, const struct brc_job *job, const char *section,
-                  struct brc_param_list list, const struct brc_case_entry *e, const char *clause)
+static int refuse(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
+                  struct brc_param_list list, const struct brc_casefile_entry *e,
+                  const char *clause)
 {
     struct part part;
     struct brc_param_list far;
-    char where[BRC_CASE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE];
+    char where[BRC_CASEFILE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE];
     take_part(clause, section, &part);
     int i = find_section(part.section, &far);
     const struct brc_param *p = brc_params_find(far, part.key);
-    const struct brc_case_entry *given =
-        brc_case_find_entry(&job->file, part.section, part.key, far);
-    BRC_TRY(list_others(ctx, job, section, list, &part, others, sizeof others));
+    const struct brc_casefile_entry *given =
+        brc_casefile_find_entry(&run_case->file, part.section, part.key, far);
+    BRC_TRY(list_others(ctx, run_case, section, list, &part, others, sizeof others));
     BRC_FAIL(ctx, BRC_ERR_INPUT,
              "%s: %s.%s: applies only with %.*s, but %s.%s is %s%s; leave the key out, or change "
              "%s.%s%s%s",
-             brc_case_where(&job->file, e->line, e->is_override, where), section,
-             brc_case_key(e, list), (int)strcspn(clause, ","), clause, part.section, part.key,
-             value_text(p, brc_job_values(job, i), text), given ? "" : " (its default)",
+             brc_casefile_where(&run_case->file, e->line, e->is_override, where), section,
+             brc_casefile_key(e, list), (int)strcspn(clause, ","), clause, part.section, part.key,
+             value_text(p, brc_case_values(run_case, i), text), given ? "" : " (its default)",
              part.section, part.key, *others ? "; what applies now is " : "", others);
 }
 
-static int check_key(struct brc_context *ctx, const struct brc_job *job, const char *section,
+static int check_key(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                      struct brc_param_list list, const struct brc_param *p, void *values)
 {
     const char *clause;
-    const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, p->key, list);
+    const struct brc_casefile_entry *e =
+        brc_casefile_find_entry(&run_case->file, section, p->key, list);
     if (!e)
         return 0;
-    BRC_TRY(brc_applies(ctx, job, section, p, &clause));
+    BRC_TRY(brc_applies(ctx, run_case, section, p, &clause));
     if (!clause)
         return 0;
-    if (e->is_override || !is_overridden(job, section, clause))
-        return refuse(ctx, job, section, list, e, clause);
+    if (e->is_override || !is_overridden(run_case, section, clause))
+        return refuse(ctx, run_case, section, list, e, clause);
     return brc_params_set(ctx, list, values, section, p->key, p->default_text, "default");
 }
 
-int brc_applies_check(struct brc_context *ctx, const struct brc_job *job, int section, void *values)
+int brc_applies_check(struct brc_context *ctx, const struct brc_case *run_case, int section,
+                      void *values)
 {
     const char *name;
     struct brc_param_list list;
-    brc_job_section(section, &name, &list);
+    brc_case_section(section, &name, &list);
     for (int k = 0; k < list.n; k++)
         if (list.params[k].applies)
-            BRC_TRY(check_key(ctx, job, name, list, &list.params[k], values));
+            BRC_TRY(check_key(ctx, run_case, name, list, &list.params[k], values));
     return 0;
 }

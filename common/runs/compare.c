@@ -46,7 +46,7 @@ static int choose_models(struct compare *c)
 {
     const struct brc_model *model[MAX_RUNS];
     int n;
-    BRC_TRY(brc_job_models(c->ctx, c->order->job, model, MAX_RUNS, &n));
+    BRC_TRY(brc_case_models(c->ctx, c->order->run_case, model, MAX_RUNS, &n));
     brc_children_init(c->child, n);
     for (int i = 0; i < n; i++)
         BRC_TRY(add_model(c, model[i]));
@@ -57,12 +57,12 @@ static int choose_models(struct compare *c)
  * folder is touched. */
 static int try_models(const struct compare *c)
 {
-    const struct brc_job *job = c->order->job;
+    const struct brc_case *run_case = c->order->run_case;
     for (int i = 0; i < c->n; i++) {
         struct brc_sim sim;
         const struct brc_model *model = c->run[i].model;
-        BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_job_params(job, model), c->order->specimen,
-                               &job->test, &job->run));
+        BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_case_params(run_case, model),
+                               c->order->specimen, &run_case->test, &run_case->run));
         brc_sim_free(&sim);
     }
     return 0;
@@ -76,7 +76,7 @@ static int run_model(struct brc_context *ctx, const void *user, struct brc_progr
     const struct model_run *run = user;
     const struct brc_compare_order *o = run->compare->order;
     const struct brc_run_order order = {
-        .job = o->job,
+        .run_case = o->run_case,
         .model = run->model,
         .specimen = o->specimen,
         .dir = run->dir,
@@ -178,12 +178,13 @@ static int write_table(struct compare *c)
 
 static int draw(struct compare *c)
 {
-    const struct brc_job *job = c->order->job;
+    const struct brc_case *run_case = c->order->run_case;
     struct brc_plot_runs runs = {
-        .title = job->file.head.title, .test = (enum brc_test)job->test.kind, .n = c->n};
+        .title = run_case->file.head.title, .test = (enum brc_test)run_case->test.kind, .n = c->n};
     for (int i = 0; i < c->n; i++)
         runs.label[i] = runs.folder[i] = c->run[i].model->name;
-    return job->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &job->output) : 0;
+    return run_case->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &run_case->output)
+                                  : 0;
 }
 
 /* Tables and pictures of the folder itself (gnuplot.log only grows); a comparison that goes on
@@ -197,9 +198,9 @@ static int check_folders(const struct compare *c)
     for (int i = 0; i < c->n; i++) {
         bool is_resumed = o->is_resumed && brc_run_has_begun(c->run[i].dir);
         has_begun |= is_resumed;
-        BRC_TRY(brc_run_check_folder(c->ctx, c->run[i].dir, o->job, is_resumed, o->is_forced));
+        BRC_TRY(brc_run_check_folder(c->ctx, c->run[i].dir, o->run_case, is_resumed, o->is_forced));
     }
-    return brc_run_check_own(c->ctx, o->dir, o->job, names, sizeof names / sizeof names[0],
+    return brc_run_check_own(c->ctx, o->dir, o->run_case, names, sizeof names / sizeof names[0],
                              has_begun || o->is_forced);
 }
 

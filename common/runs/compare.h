@@ -6,7 +6,7 @@
 #include "common/runs/run.h"
 
 struct brc_compare_order {
-    const struct brc_job *job;
+    const struct brc_case *run_case;
     const struct brc_specimen *specimen;
     const char *dir;            /* the results of a model go to dir/<model> */
     bool is_resumed, is_forced; /* resumed: models with a state go on, the others start */

@@ -40,9 +40,9 @@ struct ladder {
 
 static int check_order(struct brc_context *ctx, const struct brc_converge_order *o)
 {
-    const struct brc_specimen_params *p = &o->job->specimen;
+    const struct brc_specimen_params *p = &o->run_case->specimen;
     bool is_given = p->grains == BRC_GRAINS_POINTS || p->grains == BRC_GRAINS_TESS;
-    if (o->job->test.kind == BRC_TEST_NONE)
+    if (o->run_case->test.kind == BRC_TEST_NONE)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "test.kind none has no loading, so there is nothing to converge");
     if (is_given && o->seeds > 1)
@@ -73,10 +73,10 @@ static int find_observable(struct brc_context *ctx, struct brc_converge_study *s
 static int try_model(struct ladder *l, const struct brc_specimen *specimen,
                      struct brc_converge_model *m)
 {
-    const struct brc_job *job = l->study.order->job;
+    const struct brc_case *run_case = l->study.order->run_case;
     struct brc_sim sim;
-    BRC_TRY(brc_sim_create(l->ctx, &sim, m->model, brc_job_params(job, m->model), specimen,
-                           &job->test, &job->run));
+    BRC_TRY(brc_sim_create(l->ctx, &sim, m->model, brc_case_params(run_case, m->model), specimen,
+                           &run_case->test, &run_case->run));
     m->test = sim.rig.params;
     m->specimen = brc_facets_hash(&specimen->facets);
     l->study.n_results = brc_rig_results(&sim, l->study.results);
@@ -91,9 +91,10 @@ static int choose_models(struct ladder *l)
     const struct brc_model *model[BRC_CONVERGE_MAX_MODELS];
     l->study.n_models = 1;
     if (o->model)
-        BRC_TRY(brc_job_model(l->ctx, o->model, &model[0]));
+        BRC_TRY(brc_case_model(l->ctx, o->model, &model[0]));
     else
-        BRC_TRY(brc_job_models(l->ctx, o->job, model, BRC_CONVERGE_MAX_MODELS, &l->study.n_models));
+        BRC_TRY(brc_case_models(l->ctx, o->run_case, model, BRC_CONVERGE_MAX_MODELS,
+                                &l->study.n_models));
     for (int i = 0; i < l->study.n_models; i++)
         l->study.model[i].model = model[i];
     return 0;
@@ -103,7 +104,7 @@ static int try_models(struct ladder *l)
 {
     struct brc_specimen specimen = {0};
     struct brc_converge_study *study = &l->study;
-    int code = brc_specimen_create(l->ctx, &study->order->job->specimen, &specimen);
+    int code = brc_specimen_create(l->ctx, &study->order->run_case->specimen, &specimen);
     for (int i = 0; i < study->n_models && code == 0; i++)
         code = try_model(l, &specimen, &study->model[i]);
     l->n_grains = specimen.facets.n_cells;
@@ -118,7 +119,7 @@ static int check_folder(const struct ladder *l)
                                         "converge.gp",       "converge.png", "converge_unfinished"};
     const struct brc_converge_order *o = l->study.order;
     bool may_go_on = o->is_resumed && brc_run_has_file(o->dir, "converge_runs.csv");
-    return brc_run_check_own(l->ctx, o->dir, o->job, names, sizeof names / sizeof names[0],
+    return brc_run_check_own(l->ctx, o->dir, o->run_case, names, sizeof names / sizeof names[0],
                              may_go_on || o->is_forced);
 }
 
@@ -135,7 +136,7 @@ static int prepare(struct ladder *l)
     BRC_TRY(find_observable(l->ctx, study));
     for (int i = 0; i < study->n_models; i++)
         BRC_TRY(brc_converge_first_settings(l->ctx, o, &study->model[i]));
-    brc_log(l->ctx, "%s: %zu grains, specimens: %d", o->job->name, l->n_grains, o->seeds);
+    brc_log(l->ctx, "%s: %zu grains, specimens: %d", o->run_case->name, l->n_grains, o->seeds);
     BRC_TRY(brc_run_make_folder(l->ctx, o->dir));
     return brc_converge_record_open(l->ctx, &l->record, study);
 }
@@ -145,7 +146,7 @@ static int prepare(struct ladder *l)
 /* What is in the way of a run is not its setting's fault: the ladder ends. */
 static int check_place(struct brc_context *ctx, const struct brc_run_order *o)
 {
-    int code = brc_run_check_folder(ctx, o->dir, o->job, o->is_resumed, o->is_forced);
+    int code = brc_run_check_folder(ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
     return code == BRC_ERR_INPUT ? (ctx->code = BRC_ERR_USAGE) : code;
 }
 
@@ -154,13 +155,13 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
 {
     const struct task *t = user;
     struct brc_specimen specimen = {0};
-    struct brc_job job;
+    struct brc_case run_case;
     bool has_begun = brc_run_has_begun(t->dir);
     bool goes_on = t->order->is_resumed && has_begun && brc_run_has_file(t->dir, "state.h5");
-    int code = brc_converge_job(ctx, t->order->job, t->setting, t->seed, &job);
+    int code = brc_converge_job(ctx, t->order->run_case, t->setting, t->seed, &run_case);
     if (code == 0)
-        code = brc_specimen_create(ctx, &job.specimen, &specimen);
-    const struct brc_run_order order = {.job = &job,
+        code = brc_specimen_create(ctx, &run_case.specimen, &specimen);
+    const struct brc_run_order order = {.run_case = &run_case,
                                         .model = t->model->model,
                                         .specimen = &specimen,
                                         .dir = t->dir,
@@ -172,7 +173,7 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
     if (code == 0)
         code = brc_run(ctx, &order, out);
     brc_specimen_free(&specimen);
-    brc_job_free(&job);
+    brc_case_free(&run_case);
     return code;
 }
 
@@ -189,7 +190,7 @@ static void tell(const struct ladder *l, const struct task *t, const struct brc_
         snprintf(value, sizeof value, "no %s", what->name);
     brc_log(l->ctx, "%d of %d  %s  %s %s  seed %d  %s%s  %" PRId64 " steps  %.2f s  about %s left",
             l->n_done, l->n_wanted, t->model->model->name, t->setting->axis, t->setting->label,
-            l->study.order->job->specimen.seed + t->seed, *message ? "failed: " : "",
+            l->study.order->run_case->specimen.seed + t->seed, *message ? "failed: " : "",
             *message ? message : value, run->steps, run->cpu_s, left);
 }
 
@@ -232,7 +233,8 @@ static int take_outcome(struct ladder *l, int slot)
     for (int i = 0; i < l->study.n_results; i++)
         run->result[i] = o->code ? NAN : o->summary.results[i].value;
     BRC_TRY(brc_converge_record_add(l->ctx, &l->record, t->model->model->name,
-                                    l->study.order->job->specimen.seed + t->seed, t->setting, run));
+                                    l->study.order->run_case->specimen.seed + t->seed, t->setting,
+                                    run));
     run->is_done = true;
     BRC_TRY(brc_run_remove(l->ctx, t->dir));
     l->n_done++;

@@ -6,13 +6,13 @@
 #define BRC_CONVERGE_H
 
 #include "common/runs/converge_stats.h"
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 
 enum { BRC_CONVERGE_MAX_SEEDS = 64, BRC_CONVERGE_MAX_SETTINGS = 96, BRC_CONVERGE_MAX_REFINE = 256 };
 enum { BRC_CONVERGE_MAX_MODELS = 16, BRC_CONVERGE_MAX_AXES = 32 };
 
 struct brc_converge_order {
-    const struct brc_job *job;
+    const struct brc_case *run_case;
     const char *model;          /* this one alone; NULL: those of the case */
     const char *dir;            /* of converge*, beside those of other commands */
     const char *observable;     /* name of a result */
@@ -46,7 +46,7 @@ struct brc_converge_run {
 };
 
 struct brc_converge_setting {
-    char axis[BRC_CASE_KEY_SIZE];
+    char axis[BRC_CASEFILE_KEY_SIZE];
     enum brc_converge_role role;
     char label[128]; /* the key that the axis is about, and its value; no comma */
     char text[512];  /* overrides "section.key=value", one a line */
@@ -75,7 +75,7 @@ struct brc_converge_model {
 
 struct brc_converge_axes {
     int n;
-    char name[BRC_CONVERGE_MAX_AXES][BRC_CASE_KEY_SIZE];
+    char name[BRC_CONVERGE_MAX_AXES][BRC_CASEFILE_KEY_SIZE];
 };
 
 /* The names of a list, or all that the case has; an unknown one is an error that names all. */
@@ -88,9 +88,9 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
                                 struct brc_converge_model *m);
 int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_order *order,
                                const struct brc_converge_axes *axes, struct brc_converge_model *m);
-/* The job of a setting on specimen number i; freed by brc_job_free, also after a failure. */
-int brc_converge_job(struct brc_context *ctx, const struct brc_job *job,
-                     const struct brc_converge_setting *s, int i, struct brc_job *out);
+/* The case of a setting on specimen number i; freed by brc_case_free, also after a failure. */
+int brc_converge_job(struct brc_context *ctx, const struct brc_case *run_case,
+                     const struct brc_converge_setting *s, int i, struct brc_case *out);
 
 /* ---- results ------------------------------------------------------------------------------- */
 

@@ -76,7 +76,7 @@ int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_or
     axes->n = 0;
     for (const char *at = order->axes; *at;) {
         size_t length = strcspn(at, ",");
-        char name[BRC_CASE_KEY_SIZE];
+        char name[BRC_CASEFILE_KEY_SIZE];
         snprintf(name, sizeof name, "%.*s", (int)length, at);
         if (!is_axis(models, n_models, name))
             return fail_axis(ctx, models, n_models, name);
@@ -110,28 +110,28 @@ static void add_line(struct brc_converge_setting *s, const char *format, ...)
     snprintf(s->text + used, sizeof s->text - used, "%s\n", line);
 }
 
-int brc_converge_job(struct brc_context *ctx, const struct brc_job *job,
-                     const struct brc_converge_setting *s, int i, struct brc_job *out)
+int brc_converge_job(struct brc_context *ctx, const struct brc_case *run_case,
+                     const struct brc_converge_setting *s, int i, struct brc_case *out)
 {
     /* files for a look at a run are not wanted */
     const char *line[MAX_LINES] = {"output.plots=off", "output.frames=0", "output.frame_strain=0",
                                    "output.frame_steps=0"};
     char text[sizeof s->text], seed[64], *rest = text;
     int n = 4;
-    snprintf(seed, sizeof seed, "specimen.seed=%d", job->specimen.seed + i);
+    snprintf(seed, sizeof seed, "specimen.seed=%d", run_case->specimen.seed + i);
     if (i > 0) /* seeds of a file have no number */
         line[n++] = seed;
     memcpy(text, s->text, sizeof text);
     while (n < MAX_LINES && (line[n] = strtok_r(rest, "\n", &rest)))
         n++;
-    return brc_job_change(ctx, job, line, n, out);
+    return brc_case_change(ctx, run_case, line, n, out);
 }
 
-static int make_key(struct brc_context *ctx, const struct brc_job *job,
+static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_converge_model *m, uint64_t *key)
 {
     const struct brc_model *model = m->model;
-    char *text = brc_job_text(ctx, job, model);
+    char *text = brc_case_text(ctx, run_case, model);
     if (!text)
         return BRC_ERR_MEMORY;
     *key = brc_hash_bytes(text, strlen(text), brc_hash_bytes(model->name, strlen(model->name), 0));
@@ -148,11 +148,11 @@ static int check(struct brc_context *ctx, const struct brc_converge_order *order
     *is_good = true;
     for (int i = 0; i < order->seeds && *is_good; i++) {
         struct brc_context own = BRC_CONTEXT_INIT;
-        struct brc_job job;
-        int code = brc_converge_job(&own, order->job, s, i, &job);
+        struct brc_case run_case;
+        int code = brc_converge_job(&own, order->run_case, s, i, &run_case);
         if (code == 0)
-            code = make_key(&own, &job, m, &s->run[i].key);
-        brc_job_free(&job);
+            code = make_key(&own, &run_case, m, &s->run[i].key);
+        brc_case_free(&run_case);
         if (code == BRC_ERR_INPUT) {
             brc_log(ctx, "%s %s is left out: %s", s->axis, s->label, own.message);
             *is_good = false;
@@ -249,7 +249,7 @@ static int add_step(struct brc_context *ctx, const struct brc_converge_order *or
                     struct brc_converge_model *m)
 {
     static const double factors[] = {0.25, 0.5, 1, 1.41421356, 2};
-    const struct brc_run_params *run = &order->job->run;
+    const struct brc_run_params *run = &order->run_case->run;
     for (int i = 0; i < 5; i++) {
         struct brc_converge_setting s = make("step", BRC_CONVERGE_LADDER, factors[i]);
         if (factors[i] > largest_step(run))
@@ -348,7 +348,7 @@ static int add_grains(struct brc_context *ctx, const struct brc_converge_order *
     for (int i = 0; i < 3; i++) {
         struct brc_converge_setting s = make("grains", BRC_CONVERGE_GRAINS, factors[i]);
         s.weight = pow(factors[i], -4); /* as many grains, and as many steps across one */
-        if (put_grains(&s, &order->job->specimen, factors[i]))
+        if (put_grains(&s, &order->run_case->specimen, factors[i]))
             BRC_TRY(add(ctx, order, m, &s));
         else if (i == 0)
             brc_log(ctx, "the grains of this specimen are given, so the axis grains is left out");
@@ -371,7 +371,7 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
         } else {
             double factor = i == BRC_CONVERGE_AT_LOADING ? 2 * finest : finest;
             double step = i == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
-            put_step(&s, &order->job->run, step);
+            put_step(&s, &order->run_case->run, step);
             put_loading(&s, &m->test, factor);
             if (find_choice(m->model, "evaluation"))
                 add_line(&s, "%s.evaluation=literal", m->model->name);

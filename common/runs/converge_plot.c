@@ -166,7 +166,7 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
                       const struct brc_converge_report *report)
 {
     static const char *const picture[] = {"converge"};
-    const struct brc_job *job = study->order->job;
+    const struct brc_case *run_case = study->order->run_case;
     int first[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES], n[BRC_CONVERGE_MAX_MODELS];
     int n_points[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES];
     FILE *out;
@@ -184,11 +184,12 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
     }
     put_range(out, study, report);
     fprintf(out, "set multiplot layout 1,%d title ", study->n_models);
-    brc_gnuplot_quoted(out, *job->file.head.title ? job->file.head.title : job->name);
+    brc_gnuplot_quoted(out,
+                       *run_case->file.head.title ? run_case->file.head.title : run_case->name);
     fputs(" font ',14'\n", out);
     for (int i = 0; i < study->n_models; i++)
         put_panel(out, &report[i], i, first[i], n_points[i], n[i]);
     fputs("unset multiplot\n", out);
     BRC_TRY(brc_gnuplot_close(ctx, study->order->dir, "converge.gp", out));
-    return job->output.plots ? brc_gnuplot_draw(ctx, study->order->dir, picture, 1) : 0;
+    return run_case->output.plots ? brc_gnuplot_draw(ctx, study->order->dir, picture, 1) : 0;
 }

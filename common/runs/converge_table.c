@@ -200,9 +200,9 @@ static void put_cheapest(FILE *out, const struct brc_converge_report *r)
 void brc_converge_print(FILE *out, const struct brc_converge_study *study,
                         const struct brc_converge_report *report)
 {
-    const struct brc_job *job = study->order->job;
-    int seeds = study->order->seeds, first = job->specimen.seed;
-    fprintf(out, "%s\n", *job->file.head.title ? job->file.head.title : job->name);
+    const struct brc_case *run_case = study->order->run_case;
+    int seeds = study->order->seeds, first = run_case->specimen.seed;
+    fprintf(out, "%s\n", *run_case->file.head.title ? run_case->file.head.title : run_case->name);
     fprintf(out, "%s, %d specimen%s (seed %d", study->results[study->observable].name, seeds,
             seeds > 1 ? "s" : "", first);
     fprintf(out, seeds > 1 ? " to %d)\n" : ")\n", first + seeds - 1);

@@ -3,10 +3,10 @@
 
 #include "common/engine/fragments.h"
 #include "common/output/io_h5.h"
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 #include "common/specimen/neper.h"
 #include "common/output/output.h"
-#include "common/output/seal.h"
+#include "common/output/checksum_header.h"
 #include "common/geometry/vec.h"
 
 #include <errno.h>
@@ -16,7 +16,7 @@
 
 /* A state with all that it hangs on. */
 struct loaded {
-    struct brc_job job;
+    struct brc_case run_case;
     struct brc_specimen specimen;
     struct brc_sim sim;
 };
@@ -26,7 +26,7 @@ static void unload(struct loaded *l)
     if (l->sim.ctx)
         brc_sim_free(&l->sim);
     brc_specimen_free(&l->specimen);
-    brc_job_free(&l->job);
+    brc_case_free(&l->run_case);
 }
 
 /* The model of a state. */
@@ -34,7 +34,7 @@ static int read_model(struct brc_context *ctx, const char *path, const struct br
 {
     char *name;
     BRC_TRY(brc_h5_read_text(ctx, path, "model", &name));
-    int code = brc_job_model(ctx, name, model);
+    int code = brc_case_model(ctx, name, model);
     free(name);
     return code;
 }
@@ -44,9 +44,9 @@ static int load_sim(struct brc_context *ctx, const char *path, struct loaded *l)
     static const struct brc_h5_extra none = {NULL, 0, NULL, 0};
     const struct brc_model *model;
     BRC_TRY(read_model(ctx, path, &model));
-    BRC_TRY(brc_specimen_create(ctx, &l->job.specimen, &l->specimen));
-    BRC_TRY(brc_sim_create(ctx, &l->sim, model, brc_job_params(&l->job, model), &l->specimen,
-                           &l->job.test, &l->job.run));
+    BRC_TRY(brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen));
+    BRC_TRY(brc_sim_create(ctx, &l->sim, model, brc_case_params(&l->run_case, model), &l->specimen,
+                           &l->run_case.test, &l->run_case.run));
     return brc_h5_load(ctx, path, &l->sim, &none);
 }
 
@@ -56,7 +56,7 @@ static int load(struct brc_context *ctx, const char *path, struct loaded *l)
     char *text;
     memset(l, 0, sizeof *l);
     BRC_TRY(brc_h5_read_text(ctx, path, "case", &text));
-    int code = brc_job_parse(ctx, &l->job, path, text);
+    int code = brc_case_parse(ctx, &l->run_case, path, text);
     free(text);
     BRC_TRY(code);
     return load_sim(ctx, path, l);
@@ -69,9 +69,9 @@ struct target {
 };
 
 /* The file out must not be there, nor where it is written first; what is read is never replaced:
- * the file and, where the job counts, those that it names. */
+ * the file and, where the case counts, those that it names. */
 static int check_out(struct brc_context *ctx, const struct brc_export_order *o,
-                     const struct brc_job *job)
+                     const struct brc_case *run_case)
 {
     char part[4096];
     struct stat status;
@@ -88,7 +88,7 @@ static int check_out(struct brc_context *ctx, const struct brc_export_order *o,
             "-o: %s is there and is not a plain file; choose another name, or leave -o out for "
             "standard output",
             in_the_way);
-    if (brc_job_is_same_file(o->path, o->out) || (job && brc_job_is_input(job, o->out)))
+    if (brc_case_is_same_file(o->path, o->out) || (run_case && brc_case_is_input(run_case, o->out)))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "-o: %s is what is read; choose another name", o->out);
     if (!o->is_forced)
         BRC_FAIL(ctx, BRC_ERR_USAGE,
@@ -302,11 +302,11 @@ static int put_tess(struct brc_context *ctx, FILE *out, const void *what)
 /* The specimen of a state or of a case file. */
 static int load_specimen(struct brc_context *ctx, const char *path, struct loaded *l)
 {
-    if (brc_seal_is_there(path, &brc_seal_state))
+    if (brc_checksum_is_there(path, &brc_checksum_state))
         return load(ctx, path, l);
     memset(l, 0, sizeof *l);
-    BRC_TRY(brc_job_read(ctx, &l->job, path, NULL, 0));
-    return brc_specimen_create(ctx, &l->job.specimen, &l->specimen);
+    BRC_TRY(brc_case_read(ctx, &l->run_case, path, NULL, 0));
+    return brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen);
 }
 
 int brc_export_format(struct brc_context *ctx, const struct brc_export_order *order,
@@ -319,7 +319,7 @@ int brc_export_format(struct brc_context *ctx, const struct brc_export_order *or
     int code = is_stl ? load(ctx, order->path, &l) : load_specimen(ctx, order->path, &l);
     const struct target stl = {put_stl, &l.sim}, tess = {put_tess, &l.specimen};
     if (code == 0)
-        code = check_out(ctx, order, &l.job);
+        code = check_out(ctx, order, &l.run_case);
     if (code == 0)
         code = write_to(ctx, order->out, is_stl ? &stl : &tess);
     unload(&l);

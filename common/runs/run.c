@@ -136,7 +136,7 @@ static int open_log(struct run *r)
 static int replace_old(struct run *r)
 {
     const struct brc_run_order *o = r->order;
-    BRC_TRY(brc_run_keep_case(r->ctx, o->dir, o->job, r->case_text, true));
+    BRC_TRY(brc_run_keep_case(r->ctx, o->dir, o->run_case, r->case_text, true));
     BRC_TRY(brc_run_remove_results(r->ctx, o->dir));
     if (ftruncate(fileno(r->log), 0) != 0)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot empty the log in %s: %s", o->dir, strerror(errno));
@@ -184,9 +184,9 @@ struct extra {
 
 static void make_extra(struct run *r, struct extra *e)
 {
-    const struct brc_job *job = r->order->job;
+    const struct brc_case *run_case = r->order->run_case;
     *e = (struct extra){.texts = {{"case", r->case_text},
-                                  {"case_name", job->name},
+                                  {"case_name", run_case->name},
                                   {"parameters", r->parameters},
                                   {"seed", r->seed}},
                         .parts = {{.path = "run",
@@ -212,7 +212,7 @@ static int save(struct run *r)
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
     BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->order->dir));
     /* limits of a run that goes on may have changed: so does the case, with the state */
-    BRC_TRY(brc_run_keep_case(r->ctx, r->order->dir, r->order->job, r->case_text, false));
+    BRC_TRY(brc_run_keep_case(r->ctx, r->order->dir, r->order->run_case, r->case_text, false));
     r->saved_at = brc_progress_clock();
     return 0;
 }
@@ -240,7 +240,7 @@ static int load(struct run *r)
     BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(check_model(r, path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
-    int code = brc_job_same(r->ctx, saved, r->parameters);
+    int code = brc_case_same(r->ctx, saved, r->parameters);
     free(saved);
     BRC_TRY(code);
     BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra.h5));
@@ -249,7 +249,7 @@ static int load(struct run *r)
 
 static int take_frames(struct run *r)
 {
-    const struct brc_output_params *output = &r->order->job->output;
+    const struct brc_output_params *output = &r->order->run_case->output;
     struct extra extra;
     if (!brc_frames_are_on(output))
         return 0;
@@ -313,7 +313,8 @@ static bool save_is_due(const struct run *r)
 static int end_loop(struct run *r)
 {
     BRC_TRY(save(r));
-    bool has_last = brc_frames_are_on(&r->order->job->output) && strcmp(r->ended_by, "signal") != 0;
+    bool has_last =
+        brc_frames_are_on(&r->order->run_case->output) && strcmp(r->ended_by, "signal") != 0;
     return has_last ? write_last_frame(r) : 0;
 }
 
@@ -376,13 +377,13 @@ static double rounding_energy(const struct brc_sim *sim)
 static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
-    const struct brc_job *job = r->order->job;
+    const struct brc_case *run_case = r->order->run_case;
     struct brc_result result[BRC_MAX_RESULTS];
     struct brc_fragments fragments;
     double stored[3];
     sim->model.energy(sim, sim->state, stored);
     *s = (struct brc_summary){
-        .seed = job->specimen.seed,
+        .seed = run_case->specimen.seed,
         .n_grains = sim->bodies.n_grains,
         .n_facets = sim->specimen->facets.n_facets,
         .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
@@ -400,8 +401,8 @@ static int measure(const struct run *r, struct brc_summary *s)
         .unbalanced_max = brc_rig_unbalanced_max(sim),
         .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
-    snprintf(s->title, sizeof s->title, "%s", job->file.head.title);
-    snprintf(s->case_name, sizeof s->case_name, "%s", job->name);
+    snprintf(s->title, sizeof s->title, "%s", run_case->file.head.title);
+    snprintf(s->case_name, sizeof s->case_name, "%s", run_case->name);
     snprintf(s->ended_by, sizeof s->ended_by, "%s", r->ended_by ? r->ended_by : "failure");
     s->is_finished = strncmp(s->ended_by, "test.", 5) == 0;
     for (size_t i = 0; i < sim->pairs.n; i++)
@@ -434,17 +435,17 @@ static int write_tables(struct run *r)
 
 static int draw(struct run *r)
 {
-    const struct brc_job *job = r->order->job;
-    struct brc_plot_runs runs = {.title = job->file.head.title,
-                                 .test = (enum brc_test)job->test.kind,
+    const struct brc_case *run_case = r->order->run_case;
+    struct brc_plot_runs runs = {.title = run_case->file.head.title,
+                                 .test = (enum brc_test)run_case->test.kind,
                                  .n = 1,
                                  .label = {r->sim.model.name},
                                  .folder = {"."}};
     BRC_TRY(brc_plot_broken(r->ctx, r->order->dir, &r->sim));
-    BRC_TRY(brc_plot_cracks(r->ctx, r->order->dir, &r->sim, &job->output));
+    BRC_TRY(brc_plot_cracks(r->ctx, r->order->dir, &r->sim, &run_case->output));
     bool has_moved = r->sim.step > 0; /* else there is nothing to see */
-    return has_moved && job->output.plots
-               ? brc_plot_draw(r->ctx, r->order->dir, &runs, &job->output)
+    return has_moved && run_case->output.plots
+               ? brc_plot_draw(r->ctx, r->order->dir, &runs, &run_case->output)
                : 0;
 }
 
@@ -472,7 +473,7 @@ static void note_header(struct run *r)
     char description[DESCRIPTION_SIZE] = "";
     const struct brc_facets *f = &r->order->specimen->facets;
     r->sim.model.describe(&r->sim, r->sim.state, description, sizeof description);
-    note(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__, r->order->job->name);
+    note(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__, r->order->run_case->name);
     note(r, "model %s: %s", r->sim.model.name, r->sim.model.citation);
     if (*description)
         note(r, "%s", description);
@@ -485,7 +486,7 @@ static void note_header(struct run *r)
 static int check_folder(const struct run *r)
 {
     const struct brc_run_order *o = r->order;
-    return brc_run_check_folder(r->ctx, o->dir, o->job, o->is_resumed, o->is_forced);
+    return brc_run_check_folder(r->ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
 }
 
 /* A log that a full disk has cut is a failure, unless there is another. */
@@ -506,18 +507,18 @@ static int prepare(struct run *r)
 {
     const struct brc_run_order *o = r->order;
     BRC_TRY(check_folder(r));
-    r->parameters = brc_job_text(r->ctx, o->job, o->model);
+    r->parameters = brc_case_text(r->ctx, o->run_case, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
-    BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_job_params(o->job, o->model), o->specimen,
-                           &o->job->test, &o->job->run));
+    BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_case_params(o->run_case, o->model),
+                           o->specimen, &o->run_case->test, &o->run_case->run));
     if (brc_run_is_stopped())
         BRC_FAIL(r->ctx, BRC_ERR_NOT_BEGUN,
                  "interrupted before the first step; nothing was saved, and %s is as it was",
                  o->dir);
     BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
-    BRC_TRY(brc_job_keep(r->ctx, o->job, o->model, o->dir, &r->case_text));
-    BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->job, r->case_text, o->is_resumed));
+    BRC_TRY(brc_case_keep(r->ctx, o->run_case, o->model, o->dir, &r->case_text));
+    BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->run_case, r->case_text, o->is_resumed));
     BRC_TRY(open_log(r));
     BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
     bool has_state = o->is_resumed && brc_run_has_file(o->dir, "state.h5");
@@ -560,7 +561,7 @@ int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct b
 {
     struct run r = {.ctx = ctx, .order = order};
     brc_frames_init(&r.frames);
-    snprintf(r.seed, sizeof r.seed, "%d", order->job->specimen.seed);
+    snprintf(r.seed, sizeof r.seed, "%d", order->run_case->specimen.seed);
     bool is_stopped = false;
     int code = prepare(&r);
     if (code == 0) {

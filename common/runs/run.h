@@ -3,11 +3,11 @@
 #ifndef BRC_RUN_H
 #define BRC_RUN_H
 
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 #include "common/base/progress.h"
 
 struct brc_run_order {
-    const struct brc_job *job;
+    const struct brc_case *run_case;
     const struct brc_model *model;
     const struct brc_specimen *specimen;
     const char *dir; /* where results go; made when it is missing */
@@ -32,23 +32,23 @@ bool brc_run_has_file(const char *dir, const char *name);
 bool brc_run_has_begun(const char *dir);
 /* Fails when dir holds what the run would replace (results, a file of the same name of the user's
  * own) and neither is_resumed nor is_forced allows it; when there is nothing to resume; and,
- * whatever is allowed, when an input of the job lies where a result goes. BRC_ERR_INPUT,
+ * whatever is allowed, when an input of the case lies where a result goes. BRC_ERR_INPUT,
  * BRC_ERR_IO. */
-int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                          bool is_resumed, bool is_forced);
 /* The same for files of commands that run several: fails when dir holds one of n files, or the
  * beginning of one (its name with .part), and may_replace is not set, or one is an input. */
-int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *const *names, int n, bool may_replace);
 /* Of the text of a kept case; the log tells it, as "case.yaml: digest ...". */
 uint64_t brc_run_case_digest(const char *text);
 /* Fails when this text must not replace dir/case.yaml: the case that is read, or for a resumed run
  * one that it has not kept itself, by its log. */
-int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *text, bool is_resumed);
 /* Puts the text into dir/case.yaml. One that is there already stays, but for a new run's: to write
  * it tells whether there is room, before old results are removed. */
-int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *text, bool is_new);
 /* Removes what runs write: all but case and log, and everything, with the folder when it is empty
  * then. */

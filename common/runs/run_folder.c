@@ -123,12 +123,12 @@ static int check_absent(struct brc_context *ctx, const char *dir, const char *na
     return brc_run_has_file(dir, part) ? fail_occupied(ctx, dir, part) : 0;
 }
 
-static int check_input(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+static int check_input(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *name)
 {
     char path[PATH_SIZE];
     BRC_TRY(brc_run_path(ctx, dir, name, path, sizeof path));
-    if (brc_job_is_input(job, path))
+    if (brc_case_is_input(run_case, path))
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
             "%s is an input of this run, which would replace it; choose another folder with -o",
@@ -136,11 +136,11 @@ static int check_input(struct brc_context *ctx, const char *dir, const struct br
     return 0;
 }
 
-int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *const *names, int n, bool may_replace)
 {
     for (int i = 0; i < n; i++) {
-        BRC_TRY(check_input(ctx, dir, job, names[i]));
+        BRC_TRY(check_input(ctx, dir, run_case, names[i]));
         if (!may_replace)
             BRC_TRY(check_absent(ctx, dir, names[i]));
     }
@@ -175,13 +175,13 @@ static int check_resumed(struct brc_context *ctx, const char *dir)
 }
 
 /* The kept case may be the one that is read: it is judged when it is written. */
-int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                          bool is_resumed, bool is_forced)
 {
     BRC_TRY(check_writable(ctx, dir));
-    BRC_TRY(check_input(ctx, dir, job, "log"));
-    BRC_TRY(
-        brc_run_check_own(ctx, dir, job, result_files, N_RESULT_FILES, is_resumed || is_forced));
+    BRC_TRY(check_input(ctx, dir, run_case, "log"));
+    BRC_TRY(brc_run_check_own(ctx, dir, run_case, result_files, N_RESULT_FILES,
+                              is_resumed || is_forced));
     if (is_resumed)
         return check_resumed(ctx, dir);
     return is_forced ? 0 : check_new(ctx, dir);
@@ -230,14 +230,14 @@ static bool is_in_log(const char *dir, const char *path)
     return is_found;
 }
 
-int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *text, bool is_resumed)
 {
     char path[PATH_SIZE];
     BRC_TRY(brc_run_path(ctx, dir, "case.yaml", path, sizeof path));
     if (holds(path, text) || (is_resumed && is_in_log(dir, path)))
         return 0;
-    if (brc_job_is_input(job, path))
+    if (brc_case_is_input(run_case, path))
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s is the case that is read, and the options of this run would change it; choose "
                  "another folder with -o",
@@ -248,12 +248,12 @@ int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct br
     return 0;
 }
 
-int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_job *job,
+int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *text, bool is_new)
 {
     char path[PATH_SIZE];
     BRC_TRY(brc_run_path(ctx, dir, "case.yaml", path, sizeof path));
-    bool may_stay = !is_new || brc_job_is_input(job, path);
+    bool may_stay = !is_new || brc_case_is_input(run_case, path);
     return may_stay && holds(path, text) ? 0 : brc_output_text(ctx, path, text);
 }
 

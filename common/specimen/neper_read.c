@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From what a tessellation file holds to cells and their domain. */
-#include "common/specimen/complex.h"
+#include "common/specimen/cell_complex.h"
 #include "common/geometry/hilbert.h"
 #include "common/input/input_file.h"
 #include "common/specimen/neper.h"
@@ -12,7 +12,7 @@
 
 /* of the specimen's extent */
 static const double flat_tolerance = 1e-6;
-static const double weld_length = 1e-10;
+static const double merge_length = 1e-10;
 /* planes of the domain that differ by less are one: as files of planes, or by the file's digits */
 static const double plane_digits = 4e-9, digits_margin = 8;
 
@@ -209,7 +209,7 @@ static int check_flat(const struct tess *t, size_t i, const double n[3], const d
 }
 
 /* A face as a facet: out of its lower cell, the loop turned to fit. */
-static int add_facet(struct tess *t, struct brc_complex *c, size_t i, const int32_t *number_of,
+static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const int32_t *number_of,
                      const struct brc_convex *domain)
 {
     const struct brc_neper_face *f = &t->file.face[i];
@@ -232,28 +232,28 @@ static int add_facet(struct tess *t, struct brc_complex *c, size_t i, const int3
             loop[f->n - 1 - k] = v;
         }
     }
-    struct brc_complex_facet facet = {{number_of[low], high < 0 ? -1 : number_of[high]},
-                                      high < 0 ? f->domain : BRC_FACE_INNER,
-                                      f->n,
-                                      0,
-                                      {n[0], n[1], n[2]}};
-    return brc_complex_add_facet(t->file.ctx, c, &facet, loop);
+    struct brc_cell_complex_facet facet = {{number_of[low], high < 0 ? -1 : number_of[high]},
+                                           high < 0 ? f->domain : BRC_FACE_INNER,
+                                           f->n,
+                                           0,
+                                           {n[0], n[1], n[2]}};
+    return brc_cell_complex_add_facet(t->file.ctx, c, &facet, loop);
 }
 
-static int fill_complex(struct tess *t, struct brc_complex *c, const struct brc_convex *domain)
+static int fill_complex(struct tess *t, struct brc_cell_complex *c, const struct brc_convex *domain)
 {
     int32_t *number_of = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *number_of);
     int code = number_of ? 0 : BRC_ERR_MEMORY;
     for (size_t i = 0; code == 0 && i < t->file.n_cells; i++)
         number_of[t->order[i]] = (int32_t)i;
     for (size_t v = 0; code == 0 && v < t->file.n_vertices; v++)
-        code = brc_complex_add_vertex(t->file.ctx, c, t->file.vertex[v]);
+        code = brc_cell_complex_add_vertex(t->file.ctx, c, t->file.vertex[v]);
     for (size_t i = 0; code == 0 && i < t->file.n_faces; i++)
         code = add_facet(t, c, i, number_of, domain);
     free(number_of);
     if (code == 0)
-        code = brc_complex_weld(t->file.ctx, c, weld_length * t->extent);
-    return code == 0 ? brc_complex_settle(t->file.ctx, c, domain) : code;
+        code = brc_cell_complex_merge_vertices(t->file.ctx, c, merge_length * t->extent);
+    return code == 0 ? brc_cell_complex_snap_to_planes(t->file.ctx, c, domain) : code;
 }
 
 /* A seed on the other side of a face gives way to the centre of its cell: cells are measured from
@@ -274,7 +274,7 @@ static void keep_seeds_inside(struct tess *t)
     }
 }
 
-static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, double volume,
+static int make_facets(struct tess *t, struct brc_cell_complex *c, bool has_spheres, double volume,
                        struct brc_facets *out)
 {
     if (t->file.seed && !has_spheres)
@@ -289,25 +289,25 @@ static int make_facets(struct tess *t, struct brc_complex *c, bool has_spheres, 
         brc_copy(out->seed[i], t->file.seed ? t->file.seed[own] : t->centre[own]);
         out->radius[i] = t->file.seed && has_spheres ? t->file.seed[own][3] : 0;
     }
-    BRC_TRY(brc_complex_finish(t->file.ctx, c, out));
+    BRC_TRY(brc_cell_complex_finish(t->file.ctx, c, out));
     return brc_facets_verify(t->file.ctx, out, volume, t->origin);
 }
 
 static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_convex *domain,
                     struct brc_facets *out)
 {
-    struct brc_complex c;
+    struct brc_cell_complex c;
     double volume, centroid[3], inertia[3][3];
     BRC_TRY(brc_neper_parse(&t->file));
     scale(t, metres);
     BRC_TRY(place_cells(t));
     BRC_TRY(make_domain(t, domain));
     brc_convex_mass(domain, &volume, centroid, inertia);
-    brc_complex_init(&c, t->file.n_cells);
+    brc_cell_complex_init(&c, t->file.n_cells);
     int code = fill_complex(t, &c, domain);
     if (code == 0)
         code = make_facets(t, &c, has_spheres, volume, out);
-    brc_complex_free(&c);
+    brc_cell_complex_free(&c);
     if (code == 0 && brc_norm(t->origin) > 0) {
         brc_convex_shift(domain, t->origin);
         brc_facets_shift(out, t->origin);

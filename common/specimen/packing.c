@@ -36,7 +36,7 @@ struct packing {
     double *radius;  /* full */
     double *present; /* at this stage of growth */
     double mean_radius, skin;
-    struct brc_candidates near;
+    struct brc_neighbours near;
     int32_t (*near_wall)[2]; /* sphere and plane of the domain */
     size_t n_near_wall, cap_near_wall;
     double contact; /* mean contact force of the last step */
@@ -49,7 +49,7 @@ static void packing_free(struct packing *p)
     free(p->f);
     free(p->listed);
     free(p->present);
-    brc_candidates_free(&p->near);
+    brc_neighbours_free(&p->near);
     free(p->near_wall);
 }
 

@@ -24,7 +24,7 @@ void brc_seeds_free(struct brc_seeds *s)
 static int check_near(struct brc_context *ctx, const struct brc_seeds *s, double size,
                       const char *key, const int *line)
 {
-    struct brc_candidates near = {0};
+    struct brc_neighbours near = {0};
     double *reach = brc_alloc(ctx, s->n, sizeof *reach), least = least_distance * size, d[3];
     int code = reach ? 0 : BRC_ERR_MEMORY;
     if (code == 0)
@@ -40,7 +40,7 @@ static int check_near(struct brc_context *ctx, const struct brc_seeds *s, double
                              key, line ? "lines" : "numbers", line ? line[a] : a,
                              line ? line[b] : b, x[0], x[1], x[2], brc_norm(d), least);
     }
-    brc_candidates_free(&near);
+    brc_neighbours_free(&near);
     free(reach);
     return code;
 }

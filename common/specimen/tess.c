@@ -8,10 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lengths in units of the mean cell size. Vertices nearer than weld are one, vertices nearer than a
- * tenth of it to a domain plane lie on it. Rounding is below 1e-13, facets that matter are above
- * 1e-6. Only details of just the weld length can spoil a cell; then the next length is tried. */
-static const double weld_lengths[] = {1e-9, 1e-11, 1e-7};
+/* Lengths in units of the mean cell size. Vertices nearer than merge_length are one, vertices
+ * nearer than a tenth of it to a domain plane lie on it. Rounding is below 1e-13, facets that
+ * matter are above 1e-6. Only details of just the merge length can spoil a cell; then the next
+ * length is tried. */
+static const double merge_lengths[] = {1e-9, 1e-11, 1e-7};
 static const double clip_part = 0.1;
 /* what the cells of CGAL and their cuts take of the time, about */
 static const double cells_part = 0.5, clips_part = 0.3;
@@ -48,16 +49,17 @@ static int copy_seeds(struct brc_context *ctx, double (*seed)[3], const double *
     return 0;
 }
 
-static int clip_and_weld(struct brc_context *ctx, struct brc_complex *c,
-                         const struct brc_convex *domain, double weld, struct brc_work *work)
+static int clip_and_merge(struct brc_context *ctx, struct brc_cell_complex *c,
+                          const struct brc_convex *domain, double merge_length,
+                          struct brc_work *work)
 {
-    BRC_TRY(brc_complex_weld(ctx, c, weld));
+    BRC_TRY(brc_cell_complex_merge_vertices(ctx, c, merge_length));
     for (size_t f = 0; f < domain->n_faces; f++) {
-        BRC_TRY(brc_complex_clip(ctx, c, &domain->plane[f], clip_part * weld));
+        BRC_TRY(brc_cell_complex_clip(ctx, c, &domain->plane[f], clip_part * merge_length));
         brc_work_update(work, cells_part + clips_part * (double)(f + 1) / (double)domain->n_faces);
     }
-    BRC_TRY(brc_complex_weld(ctx, c, weld));
-    return brc_complex_settle(ctx, c, domain);
+    BRC_TRY(brc_cell_complex_merge_vertices(ctx, c, merge_length));
+    return brc_cell_complex_snap_to_planes(ctx, c, domain);
 }
 
 /* The input and the work arrays of one call of brc_tess_laguerre; places are relative to origin. */
@@ -70,11 +72,11 @@ struct work {
     double (*own_seed)[3];
     struct brc_convex own_domain;
     double volume, centroid[3];
-    struct brc_complex complex;
+    struct brc_cell_complex complex;
     int32_t *hider;    /* as of brc_cgal_cells */
     uint8_t *is_empty; /* no cell inside the domain */
     struct brc_work progress;
-    bool is_incomplete; /* some seed has no cell: no other weld length helps */
+    bool is_incomplete; /* some seed has no cell: no other merge length helps */
 };
 
 /* Names the first seed without a cell and, where known, the seed that takes its place. */
@@ -104,37 +106,38 @@ static int name_missing(struct brc_context *ctx, const struct work *w)
     return 0;
 }
 
-static int make_cells(struct brc_context *ctx, struct work *w, double weld)
+static int make_cells(struct brc_context *ctx, struct work *w, double merge_length)
 {
-    brc_complex_free(&w->complex);
-    brc_complex_init(&w->complex, w->n);
+    brc_cell_complex_free(&w->complex);
+    brc_cell_complex_init(&w->complex, w->n);
     BRC_TRY(brc_cgal_cells(ctx, w->seed, w->radius, w->n, w->centroid,
                            brc_convex_reach(w->domain, w->centroid), w->hider, &w->complex));
     brc_work_update(&w->progress, cells_part);
-    BRC_TRY(clip_and_weld(ctx, &w->complex, w->domain, weld, &w->progress));
-    w->is_incomplete = brc_complex_empty_cells(&w->complex, w->is_empty) > 0;
+    BRC_TRY(clip_and_merge(ctx, &w->complex, w->domain, merge_length, &w->progress));
+    w->is_incomplete = brc_cell_complex_empty_cells(&w->complex, w->is_empty) > 0;
     return 0;
 }
 
-static int make_facets(struct brc_context *ctx, struct work *w, double weld, struct brc_facets *out)
+static int make_facets(struct brc_context *ctx, struct work *w, double merge_length,
+                       struct brc_facets *out)
 {
-    BRC_TRY(make_cells(ctx, w, weld));
+    BRC_TRY(make_cells(ctx, w, merge_length));
     if (w->is_incomplete)
         return name_missing(ctx, w);
     BRC_TRY(copy_seeds(ctx, w->seed, w->radius, w->n, out));
-    BRC_TRY(brc_complex_finish(ctx, &w->complex, out));
+    BRC_TRY(brc_cell_complex_finish(ctx, &w->complex, out));
     return brc_facets_verify(ctx, out, w->volume, w->origin);
 }
 
-/* Tries the weld lengths in turn; the first failure is the one reported. */
+/* Tries the merge lengths in turn; the first failure is the one reported. */
 static int try_facets(struct brc_context *ctx, struct work *w, struct brc_facets *out)
 {
-    const int n_tries = (int)(sizeof weld_lengths / sizeof *weld_lengths);
+    const int n_tries = (int)(sizeof merge_lengths / sizeof *merge_lengths);
     double size = cbrt(w->volume / (double)w->n);
     struct brc_context first = *ctx;
     int code = 0;
     for (int i = 0; i < n_tries; i++) {
-        code = make_facets(ctx, w, weld_lengths[i] * size, out);
+        code = make_facets(ctx, w, merge_lengths[i] * size, out);
         if (code != BRC_ERR_GEOMETRY || w->is_incomplete)
             return code;
         brc_facets_free(out);
@@ -193,7 +196,7 @@ int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *
     brc_work_begin(&w.progress, ctx, "tessellating");
     int code = prepare(ctx, &w);
     if (code == 0 && hidden)
-        code = make_cells(ctx, &w, weld_lengths[0] * cbrt(w.volume / (double)n));
+        code = make_cells(ctx, &w, merge_lengths[0] * cbrt(w.volume / (double)n));
     if (code == 0 && hidden)
         memcpy(hidden, w.is_empty, n);
     if (code == 0 && !hidden)
@@ -203,7 +206,7 @@ int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *
     if (code == 0 && !hidden && w.own_seed)
         brc_facets_shift(out, w.origin);
     brc_work_end(&w.progress);
-    brc_complex_free(&w.complex);
+    brc_cell_complex_free(&w.complex);
     brc_convex_free(&w.own_domain);
     free(w.own_seed);
     free(w.hider);

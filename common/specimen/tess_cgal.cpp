@@ -249,7 +249,7 @@ template <class Triangulation> Sorted<Triangulation>::Sorted(const Triangulation
 template <class Triangulation>
 int add_facet(brc_context *ctx, const Triangulation &t,
               const typename Sorted<Triangulation>::Edge &e, double (*seed)[3],
-              std::vector<int32_t> &loop, brc_complex *out)
+              std::vector<int32_t> &loop, brc_cell_complex *out)
 {
     loop.clear();
     auto start = t.incident_cells(e.edge), at = start;
@@ -258,11 +258,11 @@ int add_facet(brc_context *ctx, const Triangulation &t,
     while (++at != start);
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     bool is_open = e.high < 0;
-    brc_complex_facet facet = {{e.low, is_open ? -1 : e.high},
-                               is_open ? BRC_FACE_OPEN : BRC_FACE_INNER,
-                               static_cast<int32_t>(loop.size()),
-                               0,
-                               {0, 0, 0}};
+    brc_cell_complex_facet facet = {{e.low, is_open ? -1 : e.high},
+                                    is_open ? BRC_FACE_OPEN : BRC_FACE_INNER,
+                                    static_cast<int32_t>(loop.size()),
+                                    0,
+                                    {0, 0, 0}};
     if (!is_open) {
         double d[3], length;
         for (int k = 0; k < 3; k++)
@@ -271,18 +271,18 @@ int add_facet(brc_context *ctx, const Triangulation &t,
         for (int k = 0; k < 3; k++)
             facet.normal[k] = d[k] / length;
     }
-    return brc_complex_add_facet(ctx, out, &facet, loop.data());
+    return brc_cell_complex_add_facet(ctx, out, &facet, loop.data());
 }
 
 template <class Triangulation>
-int copy_cells(brc_context *ctx, const Triangulation &t, double (*seed)[3], brc_complex *out)
+int copy_cells(brc_context *ctx, const Triangulation &t, double (*seed)[3], brc_cell_complex *out)
 {
     Sorted<Triangulation> sorted(t);
     int32_t n = 0;
     for (const auto &cell : sorted.cells) {
         double x[3];
         cell_centre(cell.corner, x);
-        BRC_TRY(brc_complex_add_vertex(ctx, out, x));
+        BRC_TRY(brc_cell_complex_add_vertex(ctx, out, x));
         cell.handle->info() = n++;
     }
     std::vector<int32_t> loop;
@@ -293,7 +293,7 @@ int copy_cells(brc_context *ctx, const Triangulation &t, double (*seed)[3], brc_
 
 template <class Triangulation>
 int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
-               const double centre[3], double half_width, int32_t *hider, brc_complex *out)
+               const double centre[3], double half_width, int32_t *hider, brc_cell_complex *out)
 {
     using Vertex = typename Triangulation::Point;
     Triangulation t;
@@ -424,7 +424,7 @@ template <class Work> int guarded(brc_context *ctx, const char *what, Work work)
 
 extern "C" int brc_cgal_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                               const double centre[3], double half_width, int32_t *hider,
-                              brc_complex *out)
+                              brc_cell_complex *out)
 {
     return guarded(ctx, "tessellation", [&] {
         return radius ? make_cells<Regular>(ctx, seed, radius, n, centre, half_width, hider, out)

@@ -3,7 +3,7 @@
 #ifndef BRC_TESS_CGAL_H
 #define BRC_TESS_CGAL_H
 
-#include "common/specimen/complex.h"
+#include "common/specimen/cell_complex.h"
 
 /* A plane triangle mesh. */
 struct brc_cgal_mesh {
@@ -18,7 +18,7 @@ struct brc_cgal_mesh {
  * else the seed that takes its place; cells are made for all seeds that have one. */
 int brc_cgal_cells(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                    const double centre[3], double half_width, int32_t *hider,
-                   struct brc_complex *out);
+                   struct brc_cell_complex *out);
 
 /* Delaunay mesh of a convex polygon with triangles of at most max_area. */
 int brc_cgal_triangulate(struct brc_context *ctx, double (*corner)[2], size_t n, double max_area,

@@ -14,7 +14,7 @@ struct disc {
     double radius, thickness;
     int n_sides;
     struct brc_cgal_mesh mesh;
-    struct brc_complex complex;
+    struct brc_cell_complex complex;
     double (*centre)[3]; /* [n_triangles] */
     size_t *order;       /* [n_triangles] triangle of a cell */
     int32_t *cell;       /* [n_triangles] cell of a triangle */
@@ -67,7 +67,7 @@ static int add_vertices(struct brc_context *ctx, struct disc *d)
     for (size_t v = 0; v < d->mesh.n_vertices; v++)
         for (int top = 0; top < 2; top++) {
             double x[3] = {d->mesh.vertex[v][0], d->mesh.vertex[v][1], top ? d->thickness : 0};
-            BRC_TRY(brc_complex_add_vertex(ctx, &d->complex, x));
+            BRC_TRY(brc_cell_complex_add_vertex(ctx, &d->complex, x));
         }
     return 0;
 }
@@ -80,7 +80,7 @@ static int add_wall(struct brc_context *ctx, struct disc *d, size_t t, int k)
     int32_t other = d->mesh.neighbour[t][k];
     int32_t loop[4] = {2 * u, 2 * v, 2 * v + 1, 2 * u + 1};
     const double *p = d->mesh.vertex[u], *q = d->mesh.vertex[v];
-    struct brc_complex_facet facet = {{d->cell[t], -1}, BRC_FACE_INNER, 4, 0, {0, 0, 0}};
+    struct brc_cell_complex_facet facet = {{d->cell[t], -1}, BRC_FACE_INNER, 4, 0, {0, 0, 0}};
     brc_set(facet.normal, q[1] - p[1], p[0] - q[0], 0);
     brc_normalise(facet.normal, facet.normal);
     if (other >= 0) {
@@ -95,7 +95,7 @@ static int add_wall(struct brc_context *ctx, struct disc *d, size_t t, int k)
         double tilt = 2 * BRC_PI * side / d->n_sides;
         brc_set(facet.normal, -sin(tilt), cos(tilt), 0);
     }
-    return brc_complex_add_facet(ctx, &d->complex, &facet, loop);
+    return brc_cell_complex_add_facet(ctx, &d->complex, &facet, loop);
 }
 
 static int add_prisms(struct brc_context *ctx, struct disc *d)
@@ -104,10 +104,10 @@ static int add_prisms(struct brc_context *ctx, struct disc *d)
         const int32_t *v = d->mesh.triangle[t];
         int32_t bottom[3] = {2 * v[0], 2 * v[2], 2 * v[1]};
         int32_t top[3] = {2 * v[0] + 1, 2 * v[1] + 1, 2 * v[2] + 1};
-        struct brc_complex_facet low = {{d->cell[t], -1}, FACE_BOTTOM, 3, 0, {0, 0, -1}};
-        struct brc_complex_facet high = {{d->cell[t], -1}, FACE_TOP, 3, 0, {0, 0, 1}};
-        BRC_TRY(brc_complex_add_facet(ctx, &d->complex, &low, bottom));
-        BRC_TRY(brc_complex_add_facet(ctx, &d->complex, &high, top));
+        struct brc_cell_complex_facet low = {{d->cell[t], -1}, FACE_BOTTOM, 3, 0, {0, 0, -1}};
+        struct brc_cell_complex_facet high = {{d->cell[t], -1}, FACE_TOP, 3, 0, {0, 0, 1}};
+        BRC_TRY(brc_cell_complex_add_facet(ctx, &d->complex, &low, bottom));
+        BRC_TRY(brc_cell_complex_add_facet(ctx, &d->complex, &high, top));
         for (int k = 0; k < 3; k++)
             BRC_TRY(add_wall(ctx, d, t, k));
     }
@@ -124,7 +124,7 @@ static int make_disc(struct brc_context *ctx, struct disc *d, double max_area,
                  d->n_sides, d->radius, d->thickness, max_area);
     BRC_TRY(make_mesh(ctx, d, max_area));
     BRC_TRY(number_cells(ctx, d));
-    brc_complex_init(&d->complex, d->mesh.n_triangles);
+    brc_cell_complex_init(&d->complex, d->mesh.n_triangles);
     BRC_TRY(add_vertices(ctx, d));
     BRC_TRY(add_prisms(ctx, d));
     size_t n = d->mesh.n_triangles;
@@ -134,7 +134,7 @@ static int make_disc(struct brc_context *ctx, struct disc *d, double max_area,
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < n; i++)
         brc_copy(out->seed[i], d->centre[d->order[i]]);
-    BRC_TRY(brc_complex_finish(ctx, &d->complex, out));
+    BRC_TRY(brc_cell_complex_finish(ctx, &d->complex, out));
     double area = d->n_sides * d->radius * d->radius * sin(2 * BRC_PI / d->n_sides) / 2;
     const double zero[3] = {0, 0, 0};
     return brc_facets_verify(ctx, out, area * d->thickness, zero);
@@ -145,9 +145,9 @@ int brc_tess_disc(struct brc_context *ctx, double radius, double thickness, int 
 {
     struct disc d = {.radius = radius, .thickness = thickness, .n_sides = n_sides};
     memset(out, 0, sizeof *out);
-    brc_complex_init(&d.complex, 0);
+    brc_cell_complex_init(&d.complex, 0);
     int code = make_disc(ctx, &d, max_area, out);
-    brc_complex_free(&d.complex);
+    brc_cell_complex_free(&d.complex);
     brc_cgal_mesh_free(&d.mesh);
     free(d.centre);
     free(d.order);

@@ -204,7 +204,7 @@ static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool
 {
     const struct brc_contacts *c = &sim->pairs;
     const struct poly_rows *rows = c->model_columns;
-    struct brc_candidates grains = {0}, platens = {0};
+    struct brc_neighbours grains = {0}, platens = {0};
     size_t *listed = malloc(c->n * sizeof *listed), n = 0;
     for (size_t i = 0, k = 0; i < c->n; i++) {
         while (k < old->n && (old->pair[k][0] < c->a[i] ||
@@ -219,14 +219,14 @@ static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool
         must(sim->ctx, poly_list_row(sim, sim->state, listed[i]));
     if (candidates) {
         const struct brc_bodies *b = &sim->bodies;
-        must(sim->ctx, brc_grid_pairs(sim->ctx, (const double(*)[3])b->x, b->reach, b->n_grains,
-                                      sim->skin, &grains));
+        must(sim->ctx, brc_grid_pairs(sim->ctx, (const double(*)[3])b->x, b->bounding_radius,
+                                      b->n_grains, sim->skin, &grains));
         must(sim->ctx, brc_sim_near_platens(sim, &platens));
         must(sim->ctx, sim->model.pairs(sim, sim->state, &grains, &platens));
     }
     double time = cpu_seconds() - begin;
-    brc_candidates_free(&grains);
-    brc_candidates_free(&platens);
+    brc_neighbours_free(&grains);
+    brc_neighbours_free(&platens);
     free(listed);
     return time;
 }
@@ -241,13 +241,13 @@ static void listing(struct brc_context *ctx, const struct brc_specimen *specimen
     double steps = 0, lists = 0;
     make(ctx, &sim, specimen, settings, "compression", rate);
     for (int i = 0; i < PEAK_STEPS; i++) {
-        int64_t listings = sim.n_listings;
+        int64_t listings = sim.n_rebuilds;
         remember(&old, &sim);
         double time = step_seconds(&sim);
         if (i < SETTLED)
             continue;
         steps += time;
-        lists += list_seconds(&sim, &old, sim.n_listings > listings);
+        lists += list_seconds(&sim, &old, sim.n_rebuilds > listings);
     }
     struct bench_value v = {.name = name, .value = lists / steps, .unit = "1", .bar = 0.05};
     bench_report(&v);

@@ -132,7 +132,7 @@ static void test_growth_of_energy(void **state)
         expect_text(&f->ctx, " of the kinetic energy of ");
         expect_text(&f->ctx, "was given only ");
         for (size_t k = 0; k < f->sim.bodies.n_grains; k++)
-            CHECK_BETWEEN(f->sim.bodies.travel[k], 0, 0.1 * f->sim.skin);
+            CHECK_BETWEEN(f->sim.bodies.path_length[k], 0, 0.1 * f->sim.skin);
         brc_error_clear(&f->ctx);
     }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rock of the defaults: what a case without a section for its model gives, at any grain size.
  */
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 #include "polyhedra/poly.h"
 #include "tests/fixture.h"
 #include "vgcm/vgcm.h"
@@ -131,13 +131,13 @@ static void sides_go_by_the_test(void **state)
                  {"grains: mesh", "compression", 0}};
     struct fixture *f = *state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct brc_job job;
+        struct brc_case run_case;
         char text[160];
         snprintf(text, sizeof text, "breccia: 1\nspecimen: {%s}\ntest: {kind: %s}\n",
                  cases[i].specimen, cases[i].test);
-        CHECK_OK(&f->ctx, brc_job_parse(&f->ctx, &job, "case", text));
-        assert_int_equal(job.specimen.sides, cases[i].sides);
-        brc_job_free(&job);
+        CHECK_OK(&f->ctx, brc_case_parse(&f->ctx, &run_case, "case", text));
+        assert_int_equal(run_case.specimen.sides, cases[i].sides);
+        brc_case_free(&run_case);
     }
 }
 

@@ -28,7 +28,7 @@ static void forget(struct fixture *f)
 {
     struct brc_bodies *b = &f->sim.bodies;
     for (size_t i = 0; i < b->n; i++)
-        b->travel_listed[i] = b->travel[i] - 0.6 * f->sim.skin;
+        b->path_at_rebuild[i] = b->path_length[i] - 0.6 * f->sim.skin;
 }
 
 static void check_gas(struct fixture *f, const char *name, const char *settings, const char *run)
@@ -41,7 +41,7 @@ static void check_gas(struct fixture *f, const char *name, const char *settings,
     g = other;
     gas_build(f, NULL, model, settings, run);
     gas_build(g, NULL, model, settings, run);
-    int64_t listings = f->sim.n_listings;
+    int64_t listings = f->sim.n_rebuilds;
     for (int i = 0; i < STEPS; i++) {
         forget(g);
         fixture_steps(f, 1);
@@ -52,10 +52,10 @@ static void check_gas(struct fixture *f, const char *name, const char *settings,
         gas_reflect(g);
     }
     print_message("%s: %zu active rows in %d steps, %ld listings against %ld\n", name, n[0], STEPS,
-                  (long)(f->sim.n_listings - listings), (long)g->sim.n_listings);
+                  (long)(f->sim.n_rebuilds - listings), (long)g->sim.n_rebuilds);
     assert_true(n[0] > STEPS / 50);
-    assert_true(f->sim.n_listings - listings < STEPS / 2);
-    assert_true(g->sim.n_listings >= STEPS);
+    assert_true(f->sim.n_rebuilds - listings < STEPS / 2);
+    assert_true(g->sim.n_rebuilds >= STEPS);
     fixture_close(&other);
 }
 

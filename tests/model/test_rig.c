@@ -62,13 +62,13 @@ static void the_rate_follows_the_onset_of_damage(void **state)
         double before = rig->rate;
         fixture_steps(f, 1);
         CHECK_BETWEEN(rig->rate / before, exp(-0.3001), exp(0.0501));
-        double base = 0.004 * (rig->is_lost ? rig->strain : rig->strain_onset);
+        double base = 0.004 * (rig->is_post_peak ? rig->strain : rig->strain_onset);
         assert_true(rig->rate > 0.0999 * 0.004 * rig->strain_onset);
         assert_true(rig->rate < 1.0001 * base || rig->rate < before);
         braked = fmin(braked, rig->rate / base);
         let_go = fmax(let_go, rig->rate / base / braked);
     }
-    assert_true(rig->is_lost);
+    assert_true(rig->is_post_peak);
     assert_true(braked < 0.3);
     assert_true(let_go > 2);
 }
@@ -112,7 +112,7 @@ static void a_false_alarm_costs_little(void **state)
         while (!brc_rig_done(&f->sim)) {
             fixture_steps(f, 1);
             if (k == 2 && f->sim.step == 1500) {
-                assert_true(rig->strain_onset == 0 && rig->is_settled);
+                assert_true(rig->strain_onset == 0 && rig->is_steady);
                 f->sim.rig.strain_onset = rig->strain / 10;
             }
             assert_true(f->sim.step < 60000);
@@ -165,7 +165,7 @@ static void speed_up(struct fixture *f, bool is_with_the_specimen, double out[2]
                 "");
     fixture_steps(f, 1000);
     f->sim.rig.params.rate_max = 1e-6;
-    f->sim.has_mean = is_with_the_specimen;
+    f->sim.tracks_mean = is_with_the_specimen;
     out[0] = 0;
     for (int k = 0; k < 150; k++) {
         fixture_steps(f, 1);
@@ -194,7 +194,7 @@ static void kick_of(struct fixture *f, const char *run, double part[2])
     pull(f, "rate: 1e-7 1/s; loading: fixed", 0);
     fixture_sim(f, brc_registry_find("vgcm"), "", "kind: tension; loading: fixed", run);
     struct brc_bodies *b = &f->sim.bodies;
-    f->sim.rig.is_settled = 1;
+    f->sim.rig.is_steady = 1;
     brc_copy(b->v[0], mean);
     brc_copy(b->v_mean[0], mean);
     brc_copy(b->f[0], push);

@@ -17,7 +17,7 @@ static const char case_text[] =
 
 struct scene {
     struct brc_context ctx;
-    struct brc_job job;
+    struct brc_case run_case;
     struct brc_specimen specimen;
     char dir[64];
 };
@@ -26,14 +26,14 @@ static void open_scene(struct scene *s)
 {
     *s = (struct scene){.ctx = BRC_CONTEXT_INIT};
     snprintf(s->dir, sizeof s->dir, "/tmp/breccia-test-%ld-signals", (long)getpid());
-    CHECK_OK(&s->ctx, brc_job_parse(&s->ctx, &s->job, "case.yaml", case_text));
-    CHECK_OK(&s->ctx, brc_specimen_create(&s->ctx, &s->job.specimen, &s->specimen));
+    CHECK_OK(&s->ctx, brc_case_parse(&s->ctx, &s->run_case, "case.yaml", case_text));
+    CHECK_OK(&s->ctx, brc_specimen_create(&s->ctx, &s->run_case.specimen, &s->specimen));
 }
 
 static void close_scene(struct scene *s)
 {
     brc_specimen_free(&s->specimen);
-    brc_job_free(&s->job);
+    brc_case_free(&s->run_case);
 }
 
 /* A signal that is held now; taken back by forget. */
@@ -66,8 +66,8 @@ static void test_run(void **state)
     (void)state;
     open_scene(&s);
     struct brc_run_order order = {
-        .job = &s.job, .specimen = &s.specimen, .dir = s.dir, .progress = &progress};
-    CHECK_OK(&s.ctx, brc_job_model(&s.ctx, "vgcm", &order.model));
+        .run_case = &s.run_case, .specimen = &s.specimen, .dir = s.dir, .progress = &progress};
+    CHECK_OK(&s.ctx, brc_case_model(&s.ctx, "vgcm", &order.model));
     for (int i = 0; i < N_SIGNALS; i++) {
         char *said = NULL;
         size_t size = 0;
@@ -92,7 +92,7 @@ static void test_compare(void **state)
     (void)state;
     open_scene(&s);
     const struct brc_compare_order order = {
-        .job = &s.job, .specimen = &s.specimen, .dir = s.dir, .is_quiet = true};
+        .run_case = &s.run_case, .specimen = &s.specimen, .dir = s.dir, .is_quiet = true};
     signal_waits(SIGUSR1);
     CHECK_FAILS(&s.ctx, brc_compare(&s.ctx, &order), BRC_ERR_NOT_BEGUN, "nothing was saved");
     forget(SIGUSR1);

@@ -13,7 +13,7 @@ static int null_shape(struct brc_sim *sim, void *state)
         b->q[i][0] = 1;
         b->volume[i] = facets->volume[i];
         b->true_mass[i] = 1000 * b->volume[i];
-        b->reach[i] = cbrt(b->volume[i]);
+        b->bounding_radius[i] = cbrt(b->volume[i]);
     }
     return 0;
 }
@@ -24,8 +24,8 @@ static int null_bond(struct brc_sim *sim, void *state)
     return brc_contacts_set(sim->ctx, &sim->pairs, NULL, 0);
 }
 
-static int null_pairs(struct brc_sim *sim, void *state, const struct brc_candidates *grains,
-                      const struct brc_candidates *platens)
+static int null_pairs(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                      const struct brc_neighbours *platens)
 {
     (void)sim, (void)state, (void)grains, (void)platens;
     return 0;
@@ -54,6 +54,6 @@ const struct brc_model brc_model_null = {.name = "null",
                                          .bond = null_bond,
                                          .pairs = null_pairs,
                                          .forces = null_forces,
-                                         .walls = null_forces,
+                                         .platens = null_forces,
                                          .energy = null_energy,
                                          .springs = null_springs};

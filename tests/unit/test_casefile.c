@@ -36,28 +36,28 @@ static const char *const known[] = {"specimen", "test", "vgcm", "strict"};
 static struct brc_context ctx = BRC_CONTEXT_INIT;
 
 /* Everything that a command does with a case. */
-static int read_all(const char *text, size_t size, struct model *m, struct brc_case *c)
+static int read_all(const char *text, size_t size, struct model *m, struct brc_casefile *c)
 {
-    BRC_TRY(brc_case_parse(&ctx, "c.yaml", text, size, c));
-    BRC_TRY(brc_case_section(&ctx, c, "vgcm", model_list, m));
-    return brc_case_finish(&ctx, c, known, 4);
+    BRC_TRY(brc_casefile_parse(&ctx, "c.yaml", text, size, c));
+    BRC_TRY(brc_casefile_section(&ctx, c, "vgcm", model_list, m));
+    return brc_casefile_finish(&ctx, c, known, 4);
 }
 
 static struct model check_good(const char *text)
 {
     struct model m;
-    struct brc_case c;
+    struct brc_casefile c;
     CHECK_OK(&ctx, read_all(text, strlen(text), &m, &c));
-    brc_case_free(&c);
+    brc_casefile_free(&c);
     return m;
 }
 
 static void check_bad_bytes(const char *text, size_t size, const char *message)
 {
     struct model m;
-    struct brc_case c;
+    struct brc_casefile c;
     CHECK_FAILS(&ctx, read_all(text, size, &m, &c), BRC_ERR_INPUT, message);
-    brc_case_free(&c);
+    brc_casefile_free(&c);
 }
 
 static void check_bad(const char *text, const char *message)
@@ -76,7 +76,7 @@ static void case_is_read(void **state)
                                "vgcm: {e_bar: 50 GPa, interaction: {rule: gap, gap: 1 mm},\n"
                                "       size: [1 m, 2 m, 3 m], note: ''}\n";
     struct model m;
-    struct brc_case c;
+    struct brc_casefile c;
     (void)state;
     CHECK_OK(&ctx, read_all(text, sizeof text - 1, &m, &c));
     assert_int_equal(c.head.breccia, 1);
@@ -88,11 +88,11 @@ static void case_is_read(void **state)
     assert_true(m.e_bar == 50e9 && m.interaction == 1 && m.interaction_gap == 1e-3);
     assert_true(m.size[0] == 1 && m.size[1] == 2 && m.size[2] == 3);
     assert_string_equal(m.note, "");
-    assert_string_equal(brc_case_text(&c), text);
-    assert_int_equal(brc_case_find_section(&c, "specimen")->line, 6);
-    assert_int_equal(brc_case_find_section(&c, "vgcm")->line, 7);
-    assert_null(brc_case_find_section(&c, "test"));
-    brc_case_free(&c);
+    assert_string_equal(brc_casefile_text(&c), text);
+    assert_int_equal(brc_casefile_find_section(&c, "specimen")->line, 6);
+    assert_int_equal(brc_casefile_find_section(&c, "vgcm")->line, 7);
+    assert_null(brc_casefile_find_section(&c, "test"));
+    brc_casefile_free(&c);
 }
 
 static void spellings_agree(void **state)
@@ -112,38 +112,38 @@ static void overrides_hold(void **state)
 {
     static const char text[] = "breccia: 1\nmodel: vgcm\nvgcm: {e_bar: 50 GPa}";
     struct model m;
-    struct brc_case c;
+    struct brc_casefile c;
     (void)state;
-    CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text, sizeof text - 1, &c));
-    CHECK_OK(&ctx, brc_case_override(&ctx, &c, "vgcm.e_bar=1 GPa"));
-    CHECK_OK(&ctx, brc_case_override(&ctx, &c, "vgcm.e_bar= 60 GPa"));
-    CHECK_OK(&ctx, brc_case_override(&ctx, &c, "vgcm.interaction.rule=area"));
-    CHECK_OK(&ctx, brc_case_override(&ctx, &c, "vgcm.note=a=b.c"));
-    CHECK_OK(&ctx, brc_case_override(&ctx, &c, "model=polyhedra"));
-    CHECK_OK(&ctx, brc_case_override(&ctx, &c, "models=a, b"));
-    CHECK_OK(&ctx, brc_case_section(&ctx, &c, "vgcm", model_list, &m));
+    CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, sizeof text - 1, &c));
+    CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "vgcm.e_bar=1 GPa"));
+    CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "vgcm.e_bar= 60 GPa"));
+    CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "vgcm.interaction.rule=area"));
+    CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "vgcm.note=a=b.c"));
+    CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "model=polyhedra"));
+    CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "models=a, b"));
+    CHECK_OK(&ctx, brc_casefile_section(&ctx, &c, "vgcm", model_list, &m));
     assert_true(m.e_bar == 60e9 && m.interaction == 2);
     assert_string_equal(m.note, "a=b.c");
     assert_string_equal(c.head.model, "polyhedra");
     assert_int_equal(c.n_models, 2);
-    assert_string_equal(brc_case_text(&c), text);
-    brc_case_free(&c);
+    assert_string_equal(brc_casefile_text(&c), text);
+    brc_casefile_free(&c);
 }
 
 /* A text in which e_bar of vgcm is written over: what it becomes, and that it reads back. */
 static void check_write(const char *text, const char *key, const char *value, const char *expected)
 {
-    struct brc_case c;
-    bool is_top = brc_params_find(brc_case_param_list, key) != NULL;
+    struct brc_casefile c;
+    bool is_top = brc_params_find(brc_casefile_param_list, key) != NULL;
     const char *section = is_top ? "" : "vgcm";
-    const struct brc_param_list list = is_top ? brc_case_param_list : model_list;
-    CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text, strlen(text), &c));
-    CHECK_OK(&ctx, brc_case_write(&ctx, &c, section, key, list, value));
-    assert_string_equal(brc_case_text(&c), expected);
-    const struct brc_case_entry *e = brc_case_find_entry(&c, section, key, list);
+    const struct brc_param_list list = is_top ? brc_casefile_param_list : model_list;
+    CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, strlen(text), &c));
+    CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, section, key, list, value));
+    assert_string_equal(brc_casefile_text(&c), expected);
+    const struct brc_casefile_entry *e = brc_casefile_find_entry(&c, section, key, list);
     assert_non_null(e);
     assert_string_equal(e->text, value);
-    brc_case_free(&c);
+    brc_casefile_free(&c);
 }
 
 static void values_are_written_in_their_place(void **state)
@@ -239,14 +239,14 @@ static void every_value_reads_back(void **state)
                                         "../a-b_c.tess"};
     (void)state;
     for (size_t i = 0; i < sizeof value / sizeof value[0]; i++) {
-        struct brc_case c;
+        struct brc_casefile c;
         const char *texts[] = {"breccia: 1\nvgcm: {note: x, e_bar: 1 Pa}\n", "breccia: 1\n"};
         for (int k = 0; k < 2; k++) {
-            CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", texts[k], strlen(texts[k]), &c));
-            CHECK_OK(&ctx, brc_case_write(&ctx, &c, "vgcm", "note", model_list, value[i]));
-            assert_string_equal(brc_case_find_entry(&c, "vgcm", "note", model_list)->text,
+            CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", texts[k], strlen(texts[k]), &c));
+            CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, "vgcm", "note", model_list, value[i]));
+            assert_string_equal(brc_casefile_find_entry(&c, "vgcm", "note", model_list)->text,
                                 value[i]);
-            brc_case_free(&c);
+            brc_casefile_free(&c);
         }
     }
 }
@@ -255,15 +255,15 @@ static void check_bad_override(const char *assignment, int code, const char *mes
 {
     static const char text[] = "breccia: 1\nvgcm: {e_bar: 50 GPa}\n";
     struct model m;
-    struct brc_case c;
-    CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text, sizeof text - 1, &c));
-    int result = brc_case_override(&ctx, &c, assignment);
+    struct brc_casefile c;
+    CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, sizeof text - 1, &c));
+    int result = brc_casefile_override(&ctx, &c, assignment);
     if (result == 0)
-        result = brc_case_section(&ctx, &c, "vgcm", model_list, &m);
+        result = brc_casefile_section(&ctx, &c, "vgcm", model_list, &m);
     if (result == 0)
-        result = brc_case_finish(&ctx, &c, known, 4);
+        result = brc_casefile_finish(&ctx, &c, known, 4);
     CHECK_FAILS(&ctx, result, code, message);
-    brc_case_free(&c);
+    brc_casefile_free(&c);
 }
 
 static void bad_overrides_are_named(void **state)
@@ -348,16 +348,16 @@ static void required_keys_are_named(void **state)
         "c.yaml:3: strict.load: required key is missing (what to apply); allowed (0, inf), unit N",
         "c.yaml: strict.load: required key is missing"};
     struct strict s;
-    struct brc_case c;
+    struct brc_casefile c;
     (void)state;
     for (int i = 0; i < 2; i++) {
-        CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text[i], strlen(text[i]), &c));
-        CHECK_FAILS(&ctx, brc_case_section(&ctx, &c, "strict", strict_list, &s), BRC_ERR_INPUT,
+        CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text[i], strlen(text[i]), &c));
+        CHECK_FAILS(&ctx, brc_casefile_section(&ctx, &c, "strict", strict_list, &s), BRC_ERR_INPUT,
                     message[i]);
-        CHECK_OK(&ctx, brc_case_override(&ctx, &c, "strict.load=3 kN"));
-        CHECK_OK(&ctx, brc_case_section(&ctx, &c, "strict", strict_list, &s));
+        CHECK_OK(&ctx, brc_casefile_override(&ctx, &c, "strict.load=3 kN"));
+        CHECK_OK(&ctx, brc_casefile_section(&ctx, &c, "strict", strict_list, &s));
         assert_true(s.load == 3000);
-        brc_case_free(&c);
+        brc_casefile_free(&c);
     }
 }
 
@@ -411,7 +411,7 @@ static void bytes_are_checked(void **state)
 
 static void sizes_are_bounded(void **state)
 {
-    size_t size = BRC_CASE_MAX_BYTES + 1;
+    size_t size = BRC_CASEFILE_MAX_BYTES + 1;
     char *text = malloc(size + 1);
     (void)state;
     assert_non_null(text);
@@ -422,12 +422,12 @@ static void sizes_are_bounded(void **state)
     text[size - 1] = '\0';
     check_good(text);
     size_t n = (size_t)sprintf(text, "breccia: 1\nvgcm:\n");
-    for (int i = 0; i < BRC_CASE_MAX_ENTRIES; i++)
+    for (int i = 0; i < BRC_CASEFILE_MAX_ENTRIES; i++)
         n += (size_t)sprintf(text + n, "  k%d: 1\n", i);
     check_bad_bytes(text, n, "c.yaml:4098: more than 4096 keys in one case");
     free(text);
     char many[512] = "breccia: 1\nmodels: [";
-    for (int i = 0; i <= BRC_CASE_MAX_MODELS; i++)
+    for (int i = 0; i <= BRC_CASEFILE_MAX_MODELS; i++)
         sprintf(many + strlen(many), "%sm%d", i ? ", " : "", i);
     check_bad(strcat(many, "]\n"), "c.yaml: models: more than 16 names");
 }
@@ -435,26 +435,26 @@ static void sizes_are_bounded(void **state)
 static void files_are_opened(void **state)
 {
     char path[] = "/tmp/breccia_test_case_XXXXXX";
-    struct brc_case c;
+    struct brc_casefile c;
     int file = mkstemp(path);
     (void)state;
     assert_true(file >= 0);
     assert_int_equal(write(file, "breccia: 1\ntitle: t\n", 20), 20);
     close(file);
-    CHECK_OK(&ctx, brc_case_read(&ctx, path, &c));
+    CHECK_OK(&ctx, brc_casefile_read(&ctx, path, &c));
     assert_string_equal(c.head.title, "t");
     assert_string_equal(c.path, path);
-    brc_case_free(&c);
+    brc_casefile_free(&c);
     unlink(path);
-    CHECK_FAILS(&ctx, brc_case_read(&ctx, path, &c), BRC_ERR_IO,
+    CHECK_FAILS(&ctx, brc_casefile_read(&ctx, path, &c), BRC_ERR_IO,
                 "cannot read the case file /tmp/breccia_test_case_");
-    brc_case_free(&c);
-    CHECK_FAILS(&ctx, brc_case_read(&ctx, "/tmp", &c), BRC_ERR_IO,
+    brc_casefile_free(&c);
+    CHECK_FAILS(&ctx, brc_casefile_read(&ctx, "/tmp", &c), BRC_ERR_IO,
                 "cannot read the case file /tmp: ");
-    brc_case_free(&c);
-    CHECK_FAILS(&ctx, brc_case_read(&ctx, "/dev/zero", &c), BRC_ERR_IO,
+    brc_casefile_free(&c);
+    CHECK_FAILS(&ctx, brc_casefile_read(&ctx, "/dev/zero", &c), BRC_ERR_IO,
                 "cannot read the case file /dev/zero: it is a device");
-    brc_case_free(&c);
+    brc_casefile_free(&c);
 }
 
 /* Random damage to a good case ends in success or a message, never in a crash. */
@@ -469,7 +469,7 @@ static void damage_is_survived(void **state)
     for (int i = 0; i < 20000; i++) {
         char text[sizeof good];
         struct model m;
-        struct brc_case c;
+        struct brc_casefile c;
         memcpy(text, good, sizeof good);
         for (int k = 0; k < 3; k++) {
             seed = seed * 6364136223846793005u + 1442695040888963407u;
@@ -479,33 +479,33 @@ static void damage_is_survived(void **state)
         assert_true(code == 0 || (code == ctx.code && ctx.message[0] != '\0'));
         n_failed += code != 0;
         brc_error_clear(&ctx);
-        brc_case_free(&c);
+        brc_casefile_free(&c);
     }
     assert_true(n_failed > 10000);
 }
 
 /* Writes a key into the case that a text makes: that key reads back, all others are as before. */
-static void check_only_one_changes(const struct brc_case *before, const char *key,
+static void check_only_one_changes(const struct brc_casefile *before, const char *key,
                                    const char *value)
 {
-    struct brc_case c;
-    const char *text = brc_case_text(before);
-    CHECK_OK(&ctx, brc_case_parse(&ctx, "c.yaml", text, strlen(text), &c));
-    CHECK_OK(&ctx, brc_case_write(&ctx, &c, "vgcm", key, model_list, value));
-    const struct brc_case_entry *now = brc_case_find_entry(&c, "vgcm", key, model_list);
+    struct brc_casefile c;
+    const char *text = brc_casefile_text(before);
+    CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, strlen(text), &c));
+    CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, "vgcm", key, model_list, value));
+    const struct brc_casefile_entry *now = brc_casefile_find_entry(&c, "vgcm", key, model_list);
     assert_non_null(now);
     assert_string_equal(now->text, value);
-    const struct brc_case_entry *old = brc_case_find_entry(before, "vgcm", key, model_list);
+    const struct brc_casefile_entry *old = brc_casefile_find_entry(before, "vgcm", key, model_list);
     assert_int_equal(c.n, before->n + (old == NULL));
     for (size_t i = 0; i < before->n; i++) {
-        const struct brc_case_entry *e = &before->entries[i], *same = NULL;
+        const struct brc_casefile_entry *e = &before->entries[i], *same = NULL;
         for (size_t k = 0; k < c.n; k++)
             if (strcmp(e->section, c.entries[k].section) == 0 &&
                 strcmp(e->key, c.entries[k].key) == 0)
                 same = &c.entries[k];
         assert_true(e == old || (same && strcmp(same->text, e->text) == 0));
     }
-    brc_case_free(&c);
+    brc_casefile_free(&c);
 }
 
 /* Whatever layout YAML allows. */
@@ -521,7 +521,7 @@ static void odd_layouts_take_values(void **state)
     int n_good = 0;
     (void)state;
     for (int i = 0; i < 60000; i++) {
-        struct brc_case c;
+        struct brc_casefile c;
         char text[256];
         size_t n = strlen(good[i % 3]);
         memcpy(text, good[i % 3], n + 1);
@@ -529,13 +529,13 @@ static void odd_layouts_take_values(void **state)
             seed = seed * 6364136223846793005u + 1442695040888963407u;
             text[(seed >> 33) % n] = bytes[(seed >> 20) % (sizeof bytes - 1)];
         }
-        if (brc_case_parse(&ctx, "c.yaml", text, n, &c) == 0) {
+        if (brc_casefile_parse(&ctx, "c.yaml", text, n, &c) == 0) {
             check_only_one_changes(&c, "e_bar", "60 GPa");
             check_only_one_changes(&c, "note", "a: #b");
             n_good++;
         }
         brc_error_clear(&ctx);
-        brc_case_free(&c);
+        brc_casefile_free(&c);
     }
     assert_true(n_good > 5000);
 }

@@ -130,8 +130,8 @@ static void test_judge(void **state)
     static struct brc_converge_study study;
     static struct brc_converge_setting settings[16];
     static struct brc_converge_report report;
-    static struct brc_job job;
-    const struct brc_converge_order order = {.job = &job, .seeds = N_SEEDS};
+    static struct brc_case run_case;
+    const struct brc_converge_order order = {.run_case = &run_case, .seeds = N_SEEDS};
     study.order = &order;
     make_study(&study, settings);
     brc_converge_judge(&study, 0, &report);
@@ -172,8 +172,8 @@ static void test_print(void **state)
     static struct brc_converge_study study;
     static struct brc_converge_setting settings[16];
     static struct brc_converge_report report;
-    static struct brc_job job;
-    const struct brc_converge_order order = {.job = &job, .seeds = N_SEEDS};
+    static struct brc_case run_case;
+    const struct brc_converge_order order = {.run_case = &run_case, .seeds = N_SEEDS};
     char *text = NULL;
     size_t size = 0;
     study.order = &order;

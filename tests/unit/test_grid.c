@@ -11,7 +11,7 @@ enum { N_MAX = 600 };
 
 struct trial {
     struct brc_context ctx;
-    struct brc_candidates out;
+    struct brc_neighbours out;
     double x[N_MAX][3], reach[N_MAX];
     uint64_t random;
 };
@@ -27,7 +27,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct trial *t = *state;
-    brc_candidates_free(&t->out);
+    brc_neighbours_free(&t->out);
     return 0;
 }
 
@@ -139,7 +139,7 @@ static void platens_see_whom_they_may_touch(void **state)
     CHECK_OK(&t->ctx, brc_bodies_create(&t->ctx, b, n, 2, (struct brc_fieldset){0}));
     scatter(t, n, 1, 0.05);
     memcpy(b->x, t->x, n * sizeof *b->x);
-    memcpy(b->reach, t->reach, n * sizeof *b->reach);
+    memcpy(b->bounding_radius, t->reach, n * sizeof *b->bounding_radius);
     sim.rig.n_platens = 2;
     sim.rig.platen[0] = (struct brc_platen){.body = (int32_t)n, .n = {0, 0, 1}};
     sim.rig.platen[1] = (struct brc_platen){.body = (int32_t)n + 1, .n = {0, 0, -1}};
@@ -149,7 +149,7 @@ static void platens_see_whom_they_may_touch(void **state)
     for (size_t i = 0; i < n; i++)
         for (int p = 0; p < 2; p++) {
             double height = p == 0 ? b->x[i][2] + 0.5 : 0.5 - b->x[i][2];
-            if (height >= b->reach[i] + sim.skin)
+            if (height >= b->bounding_radius[i] + sim.skin)
                 continue;
             assert_int_equal(t->out.pair[count][0], i);
             assert_int_equal(t->out.pair[count][1], n + (size_t)p);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/h5.h"
 #include "common/output/io_h5.h"
-#include "common/output/seal.h"
+#include "common/output/checksum_header.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>
@@ -118,7 +118,7 @@ static void test_fields_describe_themselves(void **state)
     make_path(path);
     make_sim(f);
     save(f, path);
-    CHECK_OK(&f->ctx, brc_h5_open(&f->ctx, path, &brc_seal_state, &file));
+    CHECK_OK(&f->ctx, brc_h5_open(&f->ctx, path, &brc_checksum_state, &file));
     static const struct {
         const char *field, *label, *text;
     } expected[] = {
@@ -149,14 +149,14 @@ static void fails_to_load(struct fixture *f, const char *path, int code, const c
 /* Seals what stands behind the first skip bytes of a file. */
 static void seal(const char *path, int format, size_t skip)
 {
-    char seal[BRC_SEAL_SIZE], *bytes = malloc(1 << 20);
+    char seal[BRC_CHECKSUM_SIZE], *bytes = malloc(1 << 20);
     FILE *file = fopen(path, "rb");
     assert_true(bytes && file);
     size_t n = fread(bytes, 1, 1 << 20, file);
     fclose(file);
     assert_in_range(n, skip + 1, (1 << 20) - 1);
-    const struct brc_seal_kind kind = {"state", format, ""};
-    brc_seal_make(seal, &kind, bytes + skip, n - skip);
+    const struct brc_checksum_kind kind = {"state", format, ""};
+    brc_checksum_make(seal, &kind, bytes + skip, n - skip);
     file = fopen(path, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(seal, sizeof seal, 1, file), 1);
@@ -189,7 +189,7 @@ static void test_foreign_files(void **state)
     fputs("this is not an HDF5 file", out);
     fclose(out);
     fails_to_load(f, path, BRC_ERR_IO, "not a state file of breccia");
-    seal(path, brc_seal_state.format, 0);
+    seal(path, brc_checksum_state.format, 0);
     fails_to_load(f, path, BRC_ERR_IO, "not an HDF5 file");
     unlink(path);
 }
@@ -219,7 +219,7 @@ static void test_damage(void **state)
     fseek(file, 0, SEEK_END);
     long size = ftell(file);
     fclose(file);
-    for (long at = 0; at < size; at += at < BRC_SEAL_SIZE ? 1 : 97) {
+    for (long at = 0; at < size; at += at < BRC_CHECKSUM_SIZE ? 1 : 97) {
         flip(path, at);
         CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra),
                     at == 22 ? BRC_ERR_INPUT : BRC_ERR_IO, path);
@@ -245,7 +245,7 @@ static void test_other_format(void **state)
     make_path(path);
     make_sim(f);
     save(f, path);
-    seal(path, brc_seal_state.format + 1, BRC_SEAL_SIZE);
+    seal(path, brc_checksum_state.format + 1, BRC_CHECKSUM_SIZE);
     CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_INPUT,
                 "has the state format 4, breccia " BRC_VERSION " reads 3");
     unlink(path);

@@ -301,7 +301,7 @@ static void declarations_are_sound(void **state)
 {
     (void)state;
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "sample", sample_list));
-    CHECK_OK(&ctx, brc_params_check_list(&ctx, "case", brc_case_param_list));
+    CHECK_OK(&ctx, brc_params_check_list(&ctx, "case", brc_casefile_param_list));
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "specimen", specimen_list));
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "test", test_list));
     CHECK_OK(&ctx, brc_params_check_list(&ctx, "run", run_list));

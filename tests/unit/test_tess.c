@@ -3,7 +3,7 @@
  */
 #include "tests/near.h"
 
-#include "common/specimen/complex.h"
+#include "common/specimen/cell_complex.h"
 #include "common/specimen/tess.h"
 #include "common/geometry/vec.h"
 
@@ -240,26 +240,26 @@ static void test_settle(void **state)
 {
     (void)state;
     struct pack p;
-    struct brc_complex c;
+    struct brc_cell_complex c;
     memset(&p, 0, sizeof p);
     make_domain(&p, 0.05, 30);
-    brc_complex_init(&c, 1);
+    brc_cell_complex_init(&c, 1);
     for (size_t v = 0; v < p.domain.n_vertices; v++) {
         double x[3];
         for (int k = 0; k < 3; k++)
             x[k] = p.domain.vertex[v][k] + 1e-11 * (uniform() - 0.5);
-        CHECK_OK(&ctx, brc_complex_add_vertex(&ctx, &c, x));
+        CHECK_OK(&ctx, brc_cell_complex_add_vertex(&ctx, &c, x));
     }
     for (size_t f = 0; f < p.domain.n_faces; f++) {
         size_t first = p.domain.first[f];
-        struct brc_complex_facet facet = {{0, -1}, p.domain.plane[f].id, 0, 0, {0, 0, 0}};
+        struct brc_cell_complex_facet facet = {{0, -1}, p.domain.plane[f].id, 0, 0, {0, 0, 0}};
         facet.n = (int32_t)(p.domain.first[f + 1] - first);
-        CHECK_OK(&ctx, brc_complex_add_facet(&ctx, &c, &facet, p.domain.loop + first));
+        CHECK_OK(&ctx, brc_cell_complex_add_facet(&ctx, &c, &facet, p.domain.loop + first));
     }
-    CHECK_OK(&ctx, brc_complex_settle(&ctx, &c, &p.domain));
+    CHECK_OK(&ctx, brc_cell_complex_snap_to_planes(&ctx, &c, &p.domain));
     for (size_t v = 0; v < p.domain.n_vertices; v++)
         CHECK_NEAR_ARRAY(c.vertex[v], p.domain.vertex[v], 3, 1e-15, 0);
-    brc_complex_free(&c);
+    brc_cell_complex_free(&c);
     free_pack(&p);
 }
 

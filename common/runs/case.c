@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 
 #include "common/runs/applies.h"
 
@@ -9,7 +9,7 @@
 
 enum { N_COMMON = 4, LINE_SIZE = 512 };
 
-bool brc_job_section(int i, const char **name, struct brc_param_list *list)
+bool brc_case_section(int i, const char **name, struct brc_param_list *list)
 {
     static const char *const common[N_COMMON] = {"specimen", "test", "run", "output"};
     const struct brc_param_list *const lists[N_COMMON] = {&brc_specimen_param_list,
@@ -27,36 +27,38 @@ bool brc_job_section(int i, const char **name, struct brc_param_list *list)
     return true;
 }
 
-static void *section_values(struct brc_job *job, int i)
+static void *section_values(struct brc_case *run_case, int i)
 {
-    void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
-    return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
+    void *const common[N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
+                                    &run_case->output};
+    return i < N_COMMON ? common[i] : run_case->model_params[i - N_COMMON];
 }
 
-const void *brc_job_values(const struct brc_job *job, int i)
+const void *brc_case_values(const struct brc_case *run_case, int i)
 {
-    const void *const common[N_COMMON] = {&job->specimen, &job->test, &job->run, &job->output};
-    return i < N_COMMON ? common[i] : job->model_params[i - N_COMMON];
+    const void *const common[N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
+                                          &run_case->output};
+    return i < N_COMMON ? common[i] : run_case->model_params[i - N_COMMON];
 }
 
-static void take_name(struct brc_job *job, const char *path)
+static void take_name(struct brc_case *run_case, const char *path)
 {
     const char *slash = strrchr(path, '/');
-    snprintf(job->name, sizeof job->name, "%s", slash ? slash + 1 : path);
-    char *dot = strrchr(job->name, '.');
-    if (dot && dot != job->name)
+    snprintf(run_case->name, sizeof run_case->name, "%s", slash ? slash + 1 : path);
+    char *dot = strrchr(run_case->name, '.');
+    if (dot && dot != run_case->name)
         *dot = '\0';
 }
 
-static int make_room(struct brc_context *ctx, struct brc_job *job)
+static int make_room(struct brc_context *ctx, struct brc_case *run_case)
 {
-    job->n_models = brc_registry_count();
-    if (job->n_models > BRC_JOB_MAX_MODELS)
-        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%d models are registered, %d are allowed", job->n_models,
-                 BRC_JOB_MAX_MODELS);
-    for (int i = 0; i < job->n_models; i++) {
-        job->model_params[i] = brc_alloc(ctx, 1, brc_registry_at(i)->params.owner_size);
-        if (!job->model_params[i])
+    run_case->n_models = brc_registry_count();
+    if (run_case->n_models > BRC_CASE_MAX_MODELS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%d models are registered, %d are allowed",
+                 run_case->n_models, BRC_CASE_MAX_MODELS);
+    for (int i = 0; i < run_case->n_models; i++) {
+        run_case->model_params[i] = brc_alloc(ctx, 1, brc_registry_at(i)->params.owner_size);
+        if (!run_case->model_params[i])
             return BRC_ERR_MEMORY;
     }
     return 0;
@@ -67,20 +69,20 @@ static int make_room(struct brc_context *ctx, struct brc_job *job)
  * into the outer facets, and each corner is a spring. */
 enum { CORE_SIDES = 64 };
 
-static void choose_sides(struct brc_job *job)
+static void choose_sides(struct brc_case *run_case)
 {
-    struct brc_specimen_params *s = &job->specimen;
-    if (s->sides == 0 && s->grains != BRC_GRAINS_MESH && job->test.kind != BRC_TEST_BRAZILIAN)
+    struct brc_specimen_params *s = &run_case->specimen;
+    if (s->sides == 0 && s->grains != BRC_GRAINS_MESH && run_case->test.kind != BRC_TEST_BRAZILIAN)
         s->sides = CORE_SIDES;
 }
 
 /* A section, or a key of the top level, that stands as if it were a key of another section. */
-static int check_indents(struct brc_context *ctx, const struct brc_job *job)
+static int check_indents(struct brc_context *ctx, const struct brc_case *run_case)
 {
-    const struct brc_case *c = &job->file;
+    const struct brc_casefile *c = &run_case->file;
     const char *section;
     struct brc_param_list list;
-    for (int i = 0; brc_job_section(i, &section, &list); i++)
+    for (int i = 0; brc_case_section(i, &section, &list); i++)
         for (size_t k = 0; k < c->n_sections; k++) {
             const char *name = c->sections[k].name, *dot = strchr(name, '.');
             if (dot && strcmp(dot + 1, section) == 0)
@@ -90,8 +92,8 @@ static int check_indents(struct brc_context *ctx, const struct brc_job *job)
                          c->path, c->sections[k].line, section, (int)(dot - name), name);
         }
     for (size_t k = 0; k < c->n; k++) {
-        const struct brc_case_entry *e = &c->entries[k];
-        if (*e->section && !e->is_override && brc_params_find(brc_case_param_list, e->key))
+        const struct brc_casefile_entry *e = &c->entries[k];
+        if (*e->section && !e->is_override && brc_params_find(brc_casefile_param_list, e->key))
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "%s:%d: %s is a key of the top level, but it is indented under %s; write it "
                      "in the first column",
@@ -100,94 +102,97 @@ static int check_indents(struct brc_context *ctx, const struct brc_job *job)
     return 0;
 }
 
-static int judge(struct brc_context *ctx, struct brc_job *job)
+static int judge(struct brc_context *ctx, struct brc_case *run_case)
 {
-    const char *names[N_COMMON + BRC_JOB_MAX_MODELS];
+    const char *names[N_COMMON + BRC_CASE_MAX_MODELS];
     struct brc_param_list list;
     int i = 0;
-    BRC_TRY(check_indents(ctx, job));
-    for (; brc_job_section(i, &names[i], &list); i++)
-        BRC_TRY(brc_case_section(ctx, &job->file, names[i], list, section_values(job, i)));
-    BRC_TRY(brc_case_finish(ctx, &job->file, names, (size_t)i));
+    BRC_TRY(check_indents(ctx, run_case));
+    for (; brc_case_section(i, &names[i], &list); i++)
+        BRC_TRY(brc_casefile_section(ctx, &run_case->file, names[i], list,
+                                     section_values(run_case, i)));
+    BRC_TRY(brc_casefile_finish(ctx, &run_case->file, names, (size_t)i));
     for (int k = 0; k < i; k++)
-        BRC_TRY(brc_applies_check(ctx, job, k, section_values(job, k)));
-    int code = brc_rig_check(ctx, &job->test);
+        BRC_TRY(brc_applies_check(ctx, run_case, k, section_values(run_case, k)));
+    int code = brc_rig_check(ctx, &run_case->test);
     if (code != 0)
-        brc_job_locate(ctx, job);
-    choose_sides(job);
+        brc_case_locate(ctx, run_case);
+    choose_sides(run_case);
     return code;
 }
 
-static int start(struct brc_context *ctx, struct brc_job *job, const char *path)
+static int start(struct brc_context *ctx, struct brc_case *run_case, const char *path)
 {
-    memset(job, 0, sizeof *job);
-    take_name(job, path);
-    if (!brc_case_is_text(job->name))
+    memset(run_case, 0, sizeof *run_case);
+    take_name(run_case, path);
+    if (!brc_casefile_is_text(run_case->name))
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "the name of the case file is not valid UTF-8 text, and it stands in the results; "
                  "rename the file");
-    return make_room(ctx, job);
+    return make_room(ctx, run_case);
 }
 
 /* Reads on from the case itself. */
-static int finish(struct brc_context *ctx, struct brc_job *job, const char *const *overrides, int n)
+static int finish(struct brc_context *ctx, struct brc_case *run_case, const char *const *overrides,
+                  int n)
 {
     for (int k = 0; k < n; k++)
-        BRC_TRY(brc_case_override(ctx, &job->file, overrides[k]));
-    BRC_TRY(judge(ctx, job));
-    return brc_job_find_files(ctx, job);
+        BRC_TRY(brc_casefile_override(ctx, &run_case->file, overrides[k]));
+    BRC_TRY(judge(ctx, run_case));
+    return brc_case_find_files(ctx, run_case);
 }
 
-int brc_job_read(struct brc_context *ctx, struct brc_job *job, const char *path,
-                 const char *const *overrides, int n)
+int brc_case_read(struct brc_context *ctx, struct brc_case *run_case, const char *path,
+                  const char *const *overrides, int n)
 {
-    BRC_TRY(start(ctx, job, path));
-    BRC_TRY(brc_case_read(ctx, path, &job->file));
-    return finish(ctx, job, overrides, n);
+    BRC_TRY(start(ctx, run_case, path));
+    BRC_TRY(brc_casefile_read(ctx, path, &run_case->file));
+    return finish(ctx, run_case, overrides, n);
 }
 
-int brc_job_parse(struct brc_context *ctx, struct brc_job *job, const char *path, const char *text)
+int brc_case_parse(struct brc_context *ctx, struct brc_case *run_case, const char *path,
+                   const char *text)
 {
-    BRC_TRY(start(ctx, job, path));
-    BRC_TRY(brc_case_parse(ctx, path, text, strlen(text), &job->file));
-    return finish(ctx, job, NULL, 0);
+    BRC_TRY(start(ctx, run_case, path));
+    BRC_TRY(brc_casefile_parse(ctx, path, text, strlen(text), &run_case->file));
+    return finish(ctx, run_case, NULL, 0);
 }
 
-static int repeat_override(struct brc_context *ctx, struct brc_case *c,
-                           const struct brc_case_entry *e)
+static int repeat_override(struct brc_context *ctx, struct brc_casefile *c,
+                           const struct brc_casefile_entry *e)
 {
-    size_t size = strlen(e->text) + 3 * BRC_CASE_KEY_SIZE;
+    size_t size = strlen(e->text) + 3 * BRC_CASEFILE_KEY_SIZE;
     char *assignment = brc_alloc(ctx, size, 1);
     if (!assignment)
         return BRC_ERR_MEMORY;
     snprintf(assignment, size, "%s%s%s%s=%s", e->section, *e->section ? "." : "",
              *e->parent ? e->parent : e->key, *e->parent ? ".rule" : "", e->text);
-    int code = brc_case_override(ctx, c, assignment);
+    int code = brc_casefile_override(ctx, c, assignment);
     free(assignment);
     return code;
 }
 
-int brc_job_change(struct brc_context *ctx, const struct brc_job *job, const char *const *overrides,
-                   int n, struct brc_job *out)
+int brc_case_change(struct brc_context *ctx, const struct brc_case *run_case,
+                    const char *const *overrides, int n, struct brc_case *out)
 {
-    const char *text = brc_case_text(&job->file);
-    BRC_TRY(start(ctx, out, job->file.path));
-    BRC_TRY(brc_case_parse(ctx, job->file.path, text, strlen(text), &out->file));
-    for (size_t i = 0; i < job->file.n; i++)
-        if (job->file.entries[i].is_override)
-            BRC_TRY(repeat_override(ctx, &out->file, &job->file.entries[i]));
+    const char *text = brc_casefile_text(&run_case->file);
+    BRC_TRY(start(ctx, out, run_case->file.path));
+    BRC_TRY(brc_casefile_parse(ctx, run_case->file.path, text, strlen(text), &out->file));
+    for (size_t i = 0; i < run_case->file.n; i++)
+        if (run_case->file.entries[i].is_override)
+            BRC_TRY(repeat_override(ctx, &out->file, &run_case->file.entries[i]));
     return finish(ctx, out, overrides, n);
 }
 
-void brc_job_free(struct brc_job *job)
+void brc_case_free(struct brc_case *run_case)
 {
-    for (int i = 0; i < job->n_models; i++)
-        free(job->model_params[i]);
-    brc_case_free(&job->file);
-    memset(job, 0, sizeof *job);
+    for (int i = 0; i < run_case->n_models; i++)
+        free(run_case->model_params[i]);
+    brc_casefile_free(&run_case->file);
+    memset(run_case, 0, sizeof *run_case);
 }
 
-int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_model **model)
+int brc_case_model(struct brc_context *ctx, const char *name, const struct brc_model **model)
 {
     char all[400] = "";
     *model = brc_registry_find(name);
@@ -200,10 +205,10 @@ int brc_job_model(struct brc_context *ctx, const char *name, const struct brc_mo
     BRC_FAIL(ctx, BRC_ERR_INPUT, "unknown model '%.60s'; there are: %s", name, all);
 }
 
-int brc_job_models(struct brc_context *ctx, const struct brc_job *job,
-                   const struct brc_model **model, int cap, int *n)
+int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
+                    const struct brc_model **model, int cap, int *n)
 {
-    int n_named = (int)job->file.n_models;
+    int n_named = (int)run_case->file.n_models;
     *n = n_named > 0 ? n_named : brc_registry_count();
     if (*n > cap)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%d models to compare, %d at most; name fewer in 'models'", *n,
@@ -211,16 +216,16 @@ int brc_job_models(struct brc_context *ctx, const struct brc_job *job,
     for (int i = 0; i < *n; i++) {
         model[i] = brc_registry_at(i);
         if (n_named > 0)
-            BRC_TRY(brc_job_model(ctx, job->file.models[i], &model[i]));
+            BRC_TRY(brc_case_model(ctx, run_case->file.models[i], &model[i]));
     }
     return 0;
 }
 
-const void *brc_job_params(const struct brc_job *job, const struct brc_model *model)
+const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model)
 {
-    for (int i = 0; i < job->n_models; i++)
+    for (int i = 0; i < run_case->n_models; i++)
         if (brc_registry_at(i) == model)
-            return job->model_params[i];
+            return run_case->model_params[i];
     return NULL;
 }
 
@@ -238,7 +243,7 @@ static char *add_section(struct brc_context *ctx, char *text, const char *sectio
     }
     grown[used] = '\0';
     for (int i = 0; i < list.n; i++) {
-        if (brc_job_names_file(section, &list.params[i]))
+        if (brc_case_names_file(section, &list.params[i]))
             continue;
         brc_params_text(&list.params[i], values, value, sizeof value);
         int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
@@ -248,19 +253,19 @@ static char *add_section(struct brc_context *ctx, char *text, const char *sectio
     return grown;
 }
 
-char *brc_job_text(struct brc_context *ctx, const struct brc_job *job,
-                   const struct brc_model *model)
+char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
+                    const struct brc_model *model)
 {
     /* an automatic rate as a number: it hangs on strain_max, which may change when a run goes on */
-    struct brc_test_params test = job->test;
+    struct brc_test_params test = run_case->test;
     test.rate = brc_rig_start_rate(&test);
-    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &job->specimen);
+    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &run_case->specimen);
     if (text)
         text = add_section(ctx, text, "test", brc_test_param_list, &test);
     if (text)
-        text = add_section(ctx, text, "run", brc_run_param_list, &job->run);
+        text = add_section(ctx, text, "run", brc_run_param_list, &run_case->run);
     if (text)
-        text = add_section(ctx, text, model->name, model->params, brc_job_params(job, model));
+        text = add_section(ctx, text, model->name, model->params, brc_case_params(run_case, model));
     return text;
 }
 
@@ -276,7 +281,7 @@ static bool may_change(const char *line, size_t key_length)
     return false;
 }
 
-int brc_job_same(struct brc_context *ctx, const char *saved, const char *now)
+int brc_case_same(struct brc_context *ctx, const char *saved, const char *now)
 {
     while (*saved && *now) {
         size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
@@ -304,41 +309,42 @@ int brc_job_same(struct brc_context *ctx, const char *saved, const char *now)
 
 /* Does text start with "section.key" of the list? key gets the key. */
 static bool starts_with_key(const char *text, const char *section, struct brc_param_list list,
-                            char key[BRC_CASE_KEY_SIZE])
+                            char key[BRC_CASEFILE_KEY_SIZE])
 {
     size_t n = strlen(section);
     if (strncmp(text, section, n) != 0 || text[n] != '.')
         return false;
     size_t length = strspn(text + n + 1, "abcdefghijklmnopqrstuvwxyz0123456789_");
-    snprintf(key, BRC_CASE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
+    snprintf(key, BRC_CASEFILE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
     return brc_params_find(list, key) != NULL;
 }
 
 /* The first section.key in text; false when there is none. */
 static bool find_key(const char *text, const char **section, struct brc_param_list *list,
-                     char key[BRC_CASE_KEY_SIZE])
+                     char key[BRC_CASEFILE_KEY_SIZE])
 {
     for (const char *c = text; *c; c++) {
         bool is_start = c == text || strchr(" '(", c[-1]);
-        for (int i = 0; is_start && brc_job_section(i, section, list); i++)
+        for (int i = 0; is_start && brc_case_section(i, section, list); i++)
             if (starts_with_key(c, *section, *list, key))
                 return true;
     }
     return false;
 }
 
-void brc_job_locate(struct brc_context *ctx, const struct brc_job *job)
+void brc_case_locate(struct brc_context *ctx, const struct brc_case *run_case)
 {
-    char key[BRC_CASE_KEY_SIZE], where[BRC_CASE_WHERE_SIZE];
+    char key[BRC_CASEFILE_KEY_SIZE], where[BRC_CASEFILE_WHERE_SIZE];
     const char *section;
     struct brc_param_list list;
     bool is_input =
         ctx->code == BRC_ERR_INPUT || ctx->code == BRC_ERR_GEOMETRY || ctx->code == BRC_ERR_IO;
     if (!is_input || !find_key(ctx->message, &section, &list, key))
         return;
-    const struct brc_case_entry *e = brc_case_find_entry(&job->file, section, key, list);
-    const struct brc_case_place *s = brc_case_find_section(&job->file, section);
-    brc_case_where(&job->file, e ? e->line : s ? s->line : 0, e && e->is_override, where);
+    const struct brc_casefile_entry *e =
+        brc_casefile_find_entry(&run_case->file, section, key, list);
+    const struct brc_casefile_place *s = brc_casefile_find_section(&run_case->file, section);
+    brc_casefile_where(&run_case->file, e ? e->line : s ? s->line : 0, e && e->is_override, where);
     size_t n = strlen(where), left = sizeof ctx->message - n - 3;
     memmove(ctx->message + n + 2, ctx->message, left);
     ctx->message[sizeof ctx->message - 1] = '\0';

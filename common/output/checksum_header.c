@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/output/seal.h"
+#include "common/output/checksum_header.h"
 
 #include "common/base/fields.h"
 #include "common/input/input_file.h"
@@ -12,51 +12,51 @@
 
 enum { BLOCK_SIZE = 1 << 16 }; /* a multiple of 8: the hash goes on between blocks */
 /* States: 2: with a hash of the specimen. 3: the case holds its overrides as values. */
-const struct brc_seal_kind brc_seal_state = {
+const struct brc_checksum_kind brc_checksum_state = {
     "state", 3, "use an undamaged copy, or start the run anew with --force"};
-const struct brc_seal_kind brc_seal_frame = {
+const struct brc_checksum_kind brc_checksum_frame = {
     "frame", 1, "use an undamaged copy, or start the run anew with --force"};
 
 enum { MARK_SIZE = 64 };
 
-/* What a seal says. */
-struct seal {
+/* What a header says. */
+struct header {
     int format;
     uint64_t size, hash;
 };
 
-/* What a seal begins with; returns its length. */
-static size_t make_mark(const struct brc_seal_kind *kind, char mark[MARK_SIZE])
+/* What a header begins with; returns its length. */
+static size_t make_mark(const struct brc_checksum_kind *kind, char mark[MARK_SIZE])
 {
     return (size_t)snprintf(mark, MARK_SIZE, "breccia %s, format ", kind->name);
 }
 
-static void print_seal(const struct brc_seal_kind *kind, const struct seal *s,
-                       char text[BRC_SEAL_SIZE])
+static void print_header(const struct brc_checksum_kind *kind, const struct header *s,
+                         char text[BRC_CHECKSUM_SIZE])
 {
     char mark[MARK_SIZE];
     make_mark(kind, mark);
-    memset(text, '\n', BRC_SEAL_SIZE);
-    int n = snprintf(text, BRC_SEAL_SIZE,
+    memset(text, '\n', BRC_CHECKSUM_SIZE);
+    int n = snprintf(text, BRC_CHECKSUM_SIZE,
                      "%s%d\nbytes %" PRIu64 "\nhash %016" PRIx64 "\n"
                      "From byte %d on this is an HDF5 file, which any HDF5 reader opens as it is;\n"
                      "bytes is the size of the whole, hash is that of what follows this block.\n",
-                     mark, s->format, s->size, s->hash, BRC_SEAL_SIZE);
+                     mark, s->format, s->size, s->hash, BRC_CHECKSUM_SIZE);
     text[n] = '\n';
 }
 
-/* Size of a file and hash of all behind the seal. */
-static int measure(struct brc_context *ctx, const char *path, FILE *file, struct seal *s)
+/* Size of a file and hash of all behind the header. */
+static int measure(struct brc_context *ctx, const char *path, FILE *file, struct header *s)
 {
     static const size_t block_size = BLOCK_SIZE;
     char *block = brc_alloc(ctx, block_size, 1);
     if (!block)
         return BRC_ERR_MEMORY;
     size_t n;
-    s->size = BRC_SEAL_SIZE;
+    s->size = BRC_CHECKSUM_SIZE;
     s->hash = BRC_HASH_SEED;
     errno = 0;
-    bool is_good = fseek(file, BRC_SEAL_SIZE, SEEK_SET) == 0;
+    bool is_good = fseek(file, BRC_CHECKSUM_SIZE, SEEK_SET) == 0;
     while (is_good && (n = fread(block, 1, block_size, file)) > 0) {
         s->hash = brc_hash_bytes(block, n, s->hash);
         s->size += n;
@@ -68,22 +68,22 @@ static int measure(struct brc_context *ctx, const char *path, FILE *file, struct
     return 0;
 }
 
-void brc_seal_make(char seal[BRC_SEAL_SIZE], const struct brc_seal_kind *kind, const void *bytes,
-                   size_t n)
+void brc_checksum_make(char header[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,
+                       const void *bytes, size_t n)
 {
-    const struct seal s = {kind->format, BRC_SEAL_SIZE + n,
-                           brc_hash_bytes(bytes, n, BRC_HASH_SEED)};
-    print_seal(kind, &s, seal);
+    const struct header s = {kind->format, BRC_CHECKSUM_SIZE + n,
+                             brc_hash_bytes(bytes, n, BRC_HASH_SEED)};
+    print_header(kind, &s, header);
 }
 
-/* Takes the numbers out of a seal, as far as they are there: it is compared as a whole later. */
-static bool read_seal(const char text[BRC_SEAL_SIZE], const struct brc_seal_kind *kind,
-                      struct seal *s)
+/* Takes the numbers out of a header, as far as they are there: it is compared as a whole later. */
+static bool read_seal(const char text[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,
+                      struct header *s)
 {
-    char line[BRC_SEAL_SIZE + 1], mark[MARK_SIZE];
+    char line[BRC_CHECKSUM_SIZE + 1], mark[MARK_SIZE];
     size_t length = make_mark(kind, mark);
-    memcpy(line, text, BRC_SEAL_SIZE);
-    line[BRC_SEAL_SIZE] = '\0';
+    memcpy(line, text, BRC_CHECKSUM_SIZE);
+    line[BRC_CHECKSUM_SIZE] = '\0';
     if (strncmp(line, mark, length) != 0)
         return false;
     const char *size = strstr(line, "\nbytes "), *hash = strstr(line, "\nhash ");
@@ -94,11 +94,12 @@ static bool read_seal(const char text[BRC_SEAL_SIZE], const struct brc_seal_kind
 }
 
 static int check_file(struct brc_context *ctx, const char *path, FILE *file, size_t size,
-                      const struct brc_seal_kind *kind)
+                      const struct brc_checksum_kind *kind)
 {
-    char text[BRC_SEAL_SIZE], expected[BRC_SEAL_SIZE];
-    struct seal said, found = {.format = kind->format};
-    if (fread(text, 1, BRC_SEAL_SIZE, file) != BRC_SEAL_SIZE || !read_seal(text, kind, &said))
+    char text[BRC_CHECKSUM_SIZE], expected[BRC_CHECKSUM_SIZE];
+    struct header said, found = {.format = kind->format};
+    if (fread(text, 1, BRC_CHECKSUM_SIZE, file) != BRC_CHECKSUM_SIZE ||
+        !read_seal(text, kind, &said))
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "cannot read %s: it is not a %s file of breccia, is cut short, or is of a version "
                  "before %s; %s",
@@ -116,14 +117,15 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file, siz
                  "%s has %" PRIu64 " bytes, it was saved with %" PRIu64 ": it is cut short or "
                  "overwritten; %s",
                  path, found.size, said.size, kind->advice);
-    print_seal(kind, &found, expected);
-    if (memcmp(text, expected, BRC_SEAL_SIZE) != 0)
+    print_header(kind, &found, expected);
+    if (memcmp(text, expected, BRC_CHECKSUM_SIZE) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "%s is damaged: its content does not match its hash; %s", path,
                  kind->advice);
     return 0;
 }
 
-int brc_seal_check(struct brc_context *ctx, const char *path, const struct brc_seal_kind *kind)
+int brc_checksum_check(struct brc_context *ctx, const char *path,
+                       const struct brc_checksum_kind *kind)
 {
     const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
     FILE *file;
@@ -134,7 +136,7 @@ int brc_seal_check(struct brc_context *ctx, const char *path, const struct brc_s
     return code;
 }
 
-bool brc_seal_is_there(const char *path, const struct brc_seal_kind *kind)
+bool brc_checksum_is_there(const char *path, const struct brc_checksum_kind *kind)
 {
     char text[MARK_SIZE], mark[MARK_SIZE];
     size_t length = make_mark(kind, mark);

@@ -4,8 +4,8 @@
  * frame (n, s, t) of the row turns with it and a point is at h n + s s + t t from the centre. The
  * contact's own frame is fixed by the platen: normal out of the grain, against the platen's. All
  * vectors of a row are in that frame until its forces are summed up. */
-#ifndef VGCM_WALLS_H
-#define VGCM_WALLS_H
+#ifndef VGCM_PLATENS_H
+#define VGCM_PLATENS_H
 
 #include "vgcm/contact.h"
 
@@ -254,7 +254,7 @@ static void step_row(struct wall *w, size_t i, int flags)
     finish_row(w, i, force);
 }
 
-static void walls_loop(struct brc_sim *sim, const struct vgcm_law *law, int flags)
+static void platens_loop(struct brc_sim *sim, const struct vgcm_law *law, int flags)
 {
     struct wall w = {.sim = sim,
                      .c = &sim->platens,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Welding of a complex: near vertices become one, facets without width go, their vertices stay in
  * order on both sides, and vertices in the middle of an edge go. */
-#include "common/specimen/complex.h"
+#include "common/specimen/cell_complex.h"
 
 #include "common/base/grow.h"
 #include "common/geometry/vec.h"
@@ -26,8 +26,8 @@ struct splits {
     size_t n_vertex, cap_vertex;
 };
 
-struct weld {
-    struct brc_complex *c;
+struct merger {
+    struct brc_cell_complex *c;
     double tolerance;
     int32_t *to;          /* [n_vertices] the vertex that this one becomes */
     int32_t *head, *next; /* hash table of the kept vertices */
@@ -40,7 +40,7 @@ struct weld {
     struct splits splits;
 };
 
-static size_t hash_of(const struct weld *w, const int64_t key[3])
+static size_t hash_of(const struct merger *w, const int64_t key[3])
 {
     uint64_t h = (uint64_t)key[0] * UINT64_C(0x9e3779b97f4a7c15);
     h = (h ^ (h >> 29) ^ (uint64_t)key[1]) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -49,7 +49,7 @@ static size_t hash_of(const struct weld *w, const int64_t key[3])
 }
 
 /* The first kept vertex within tolerance of v in one hash cell, -1 when there is none. */
-static int32_t find_in_cell(const struct weld *w, int32_t v, const int64_t key[3])
+static int32_t find_in_cell(const struct merger *w, int32_t v, const int64_t key[3])
 {
     for (int32_t u = w->head[hash_of(w, key)]; u >= 0; u = w->next[u]) {
         double r[3];
@@ -62,7 +62,7 @@ static int32_t find_in_cell(const struct weld *w, int32_t v, const int64_t key[3
 
 /* Becomes an earlier vertex, or is kept itself. Kept vertices are farther apart than the tolerance,
  * so that no chain of small steps can join distant ones. */
-static void place_vertex(struct weld *w, int32_t v)
+static void place_vertex(struct merger *w, int32_t v)
 {
     int64_t low[3], high[3], own[3], key[3];
     double size = hash_cells * w->tolerance;
@@ -88,9 +88,9 @@ static void place_vertex(struct weld *w, int32_t v)
     }
 }
 
-static int join_vertices(struct brc_context *ctx, struct weld *w)
+static int join_vertices(struct brc_context *ctx, struct merger *w)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     for (w->n_head = 64; w->n_head < c->n_vertices; w->n_head *= 2)
         continue;
     w->to = brc_alloc(ctx, c->n_vertices, sizeof *w->to);
@@ -146,15 +146,15 @@ static int32_t find_repeat(const int32_t *loop, int32_t n, int32_t *again)
 }
 
 /* Gives facet f the loop in w->loop, tidied; a loop that touches itself becomes two facets. */
-static int set_loop(struct brc_context *ctx, struct weld *w, size_t f, int32_t n)
+static int set_loop(struct brc_context *ctx, struct merger *w, size_t f, int32_t n)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     n = tidy_loop(w->loop, n);
     int32_t again, at = n < 3 ? -1 : find_repeat(w->loop, n, &again);
     if (at >= 0) {
-        struct brc_complex_facet part = c->facet[f];
+        struct brc_cell_complex_facet part = c->facet[f];
         part.n = tidy_loop(w->loop + at, again - at);
-        BRC_TRY(brc_complex_add_facet(ctx, c, &part, w->loop + at));
+        BRC_TRY(brc_cell_complex_add_facet(ctx, c, &part, w->loop + at));
         memmove(w->loop + at, w->loop + again, (size_t)(n - again) * sizeof *w->loop);
         return set_loop(ctx, w, f, n - (again - at));
     }
@@ -169,9 +169,9 @@ static int set_loop(struct brc_context *ctx, struct weld *w, size_t f, int32_t n
 }
 
 /* Renames the vertices of all facets. */
-static int rename_vertices(struct brc_context *ctx, struct weld *w)
+static int rename_vertices(struct brc_context *ctx, struct merger *w)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     for (size_t f = 0; f < c->n_facets; f++) {
         int32_t n = c->facet[f].n;
         bool changed = false;
@@ -187,7 +187,7 @@ static int rename_vertices(struct brc_context *ctx, struct weld *w)
     return 0;
 }
 
-static double distance(const struct weld *w, int32_t u, int32_t v)
+static double distance(const struct merger *w, int32_t u, int32_t v)
 {
     double r[3];
     brc_sub(r, w->c->vertex[u], w->c->vertex[v]);
@@ -195,7 +195,7 @@ static double distance(const struct weld *w, int32_t u, int32_t v)
 }
 
 /* Position in the loop of the vertex farthest from vertex v. */
-static int32_t farthest(const struct weld *w, const int32_t *loop, int32_t n, int32_t v)
+static int32_t farthest(const struct merger *w, const int32_t *loop, int32_t n, int32_t v)
 {
     int32_t best = 0;
     for (int32_t i = 1; i < n; i++)
@@ -206,9 +206,10 @@ static int32_t farthest(const struct weld *w, const int32_t *loop, int32_t n, in
 
 /* Tells whether a facet is narrower than the tolerance. Then w->loop is its loop from one end,
  * *tip the position of the other end, and w->t the positions along the line between them. */
-static int is_narrow(struct brc_context *ctx, struct weld *w, size_t f, int32_t *tip, bool *narrow)
+static int is_narrow(struct brc_context *ctx, struct merger *w, size_t f, int32_t *tip,
+                     bool *narrow)
 {
-    const struct brc_complex *c = w->c;
+    const struct brc_cell_complex *c = w->c;
     const int32_t *loop = c->loop + c->facet[f].first;
     int32_t n = c->facet[f].n;
     double centroid[3], line[3];
@@ -246,7 +247,7 @@ static int by_ends(const void *a, const void *b)
 
 /* Adds to the edge at position i of w->loop (from low t to high t when rising) the vertices of the
  * other side, positions begin..end, that lie between its ends. */
-static int split_edge(struct brc_context *ctx, struct weld *w, int32_t i, int32_t n,
+static int split_edge(struct brc_context *ctx, struct merger *w, int32_t i, int32_t n,
                       const int32_t range[2])
 {
     struct splits *s = &w->splits;
@@ -270,7 +271,7 @@ static int split_edge(struct brc_context *ctx, struct weld *w, int32_t i, int32_
 }
 
 /* Marks the vertices of a loop as used in this pass; false when one was used before. */
-static bool claim_loop(struct weld *w, int32_t n, int32_t pass)
+static bool claim_loop(struct merger *w, int32_t n, int32_t pass)
 {
     for (int32_t i = 0; i < n; i++)
         if (w->claim[w->loop[i]] == pass)
@@ -282,9 +283,9 @@ static bool claim_loop(struct weld *w, int32_t n, int32_t pass)
 
 /* Removes narrow facets: both long sides get the vertices of each other, and so become one. Facets
  * that share a vertex with one removed in this pass wait for the next. */
-static int close_narrow(struct brc_context *ctx, struct weld *w, int32_t pass, size_t *n_narrow)
+static int close_narrow(struct brc_context *ctx, struct merger *w, int32_t pass, size_t *n_narrow)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     *n_narrow = w->splits.n = w->splits.n_vertex = 0;
     for (size_t f = 0; f < c->n_facets; f++) {
         int32_t tip, n = c->facet[f].n;
@@ -309,9 +310,9 @@ static int close_narrow(struct brc_context *ctx, struct weld *w, int32_t pass, s
 }
 
 /* Inserts the new vertices of split edges into all loops. */
-static int apply_splits(struct brc_context *ctx, struct weld *w)
+static int apply_splits(struct brc_context *ctx, struct merger *w)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     const struct splits *s = &w->splits;
     size_t n_facets = c->n_facets;
     for (size_t f = 0; f < n_facets && s->n > 0; f++) {
@@ -346,7 +347,7 @@ static void note_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
 }
 
 /* Removes the vertices that have only two neighbours: they lie in the middle of an edge. */
-static int drop_middle_vertices(struct brc_context *ctx, struct brc_complex *c)
+static int drop_middle_vertices(struct brc_context *ctx, struct brc_cell_complex *c)
 {
     int32_t(*near)[2] = brc_alloc(ctx, c->n_vertices, sizeof *near);
     if (!near)
@@ -371,7 +372,7 @@ static int drop_middle_vertices(struct brc_context *ctx, struct brc_complex *c)
 }
 
 /* Drops removed facets, unused vertices and gaps between loops; order stays. */
-static int compact(struct brc_context *ctx, struct brc_complex *c, int32_t *number)
+static int compact(struct brc_context *ctx, struct brc_cell_complex *c, int32_t *number)
 {
     size_t n_facets = 0, n_loop = 0;
     int32_t n = 0;
@@ -392,7 +393,7 @@ static int compact(struct brc_context *ctx, struct brc_complex *c, int32_t *numb
         return BRC_ERR_MEMORY;
     n_loop = 0;
     for (size_t f = 0; f < c->n_facets; f++) {
-        struct brc_complex_facet facet = c->facet[f];
+        struct brc_cell_complex_facet facet = c->facet[f];
         if (facet.n == 0)
             continue;
         for (int32_t i = 0; i < facet.n; i++)
@@ -408,7 +409,7 @@ static int compact(struct brc_context *ctx, struct brc_complex *c, int32_t *numb
     return 0;
 }
 
-static int weld(struct brc_context *ctx, struct weld *w)
+static int merge_all(struct brc_context *ctx, struct merger *w)
 {
     BRC_TRY(join_vertices(ctx, w));
     BRC_TRY(rename_vertices(ctx, w));
@@ -428,10 +429,11 @@ static int weld(struct brc_context *ctx, struct weld *w)
     return compact(ctx, w->c, w->to);
 }
 
-int brc_complex_weld(struct brc_context *ctx, struct brc_complex *c, double tolerance)
+int brc_cell_complex_merge_vertices(struct brc_context *ctx, struct brc_cell_complex *c,
+                                    double tolerance)
 {
-    struct weld w = {.c = c, .tolerance = tolerance};
-    int code = weld(ctx, &w);
+    struct merger w = {.c = c, .tolerance = tolerance};
+    int code = merge_all(ctx, &w);
     free(w.to);
     free(w.head);
     free(w.next);

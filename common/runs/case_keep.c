@@ -2,7 +2,7 @@
 /* The files that a case names, and the case that a run keeps. */
 #define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): glibc has realpath so */
 
-#include "common/runs/job.h"
+#include "common/runs/case.h"
 
 #include "common/runs/applies.h"
 
@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-bool brc_job_names_file(const char *section, const struct brc_param *p)
+bool brc_case_names_file(const char *section, const struct brc_param *p)
 {
     return p->kind == BRC_TEXT && strcmp(section, "specimen") == 0;
 }
@@ -30,13 +30,13 @@ static bool has_folder(const char *path)
     return strchr(path, '/') && (stat(path, &status) != 0 || S_ISREG(status.st_mode));
 }
 
-static int find_file(struct brc_context *ctx, const struct brc_job *job, const char *key,
+static int find_file(struct brc_context *ctx, const struct brc_case *run_case, const char *key,
                      char *name)
 {
-    const char *path = job->file.path, *slash = strrchr(path, '/');
+    const char *path = run_case->file.path, *slash = strrchr(path, '/');
     char found[BRC_TEXT_SIZE];
-    const struct brc_case_entry *e =
-        brc_case_find_entry(&job->file, "specimen", key, brc_specimen_param_list);
+    const struct brc_casefile_entry *e =
+        brc_casefile_find_entry(&run_case->file, "specimen", key, brc_specimen_param_list);
     if (!e || e->is_override || *name == '\0' || *name == '/' || !has_folder(path))
         return 0;
     int n = snprintf(found, sizeof found, "%.*s%s", (int)(slash - path) + 1, path, name);
@@ -49,12 +49,12 @@ static int find_file(struct brc_context *ctx, const struct brc_job *job, const c
     return 0;
 }
 
-int brc_job_find_files(struct brc_context *ctx, struct brc_job *job)
+int brc_case_find_files(struct brc_context *ctx, struct brc_case *run_case)
 {
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_job_names_file("specimen", p))
-            BRC_TRY(find_file(ctx, job, p->key, text_of(p, &job->specimen)));
+        if (brc_case_names_file("specimen", p))
+            BRC_TRY(find_file(ctx, run_case, p->key, text_of(p, &run_case->specimen)));
     }
     return 0;
 }
@@ -95,21 +95,21 @@ static int path_between(const char *from, const char *to, char *path, size_t siz
     return used + 4 >= size || used + (size_t)n >= size ? -1 : 0;
 }
 
-bool brc_job_is_same_file(const char *name, const char *path)
+bool brc_case_is_same_file(const char *name, const char *path)
 {
     struct stat a, b;
     return *name && stat(name, &a) == 0 && stat(path, &b) == 0 && a.st_dev == b.st_dev &&
            a.st_ino == b.st_ino;
 }
 
-bool brc_job_is_input(const struct brc_job *job, const char *path)
+bool brc_case_is_input(const struct brc_case *run_case, const char *path)
 {
-    struct brc_specimen_params specimen = job->specimen;
-    bool is_input = brc_job_is_same_file(job->file.path, path);
+    struct brc_specimen_params specimen = run_case->specimen;
+    bool is_input = brc_case_is_same_file(run_case->file.path, path);
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_job_names_file("specimen", p))
-            is_input = is_input || brc_job_is_same_file(text_of(p, &specimen), path);
+        if (brc_case_names_file("specimen", p))
+            is_input = is_input || brc_case_is_same_file(text_of(p, &specimen), path);
     }
     return is_input;
 }
@@ -117,7 +117,7 @@ bool brc_job_is_input(const struct brc_job *job, const char *path)
 /* ---- the case that is kept ----------------------------------------------------------------- */
 
 /* A relative name as the folder dir sees it. */
-static int keep_file(struct brc_context *ctx, struct brc_case *c, const struct brc_param *p,
+static int keep_file(struct brc_context *ctx, struct brc_casefile *c, const struct brc_param *p,
                      const char *name, const char *dir)
 {
     char path[BRC_TEXT_SIZE] = "";
@@ -136,20 +136,20 @@ static int keep_file(struct brc_context *ctx, struct brc_case *c, const struct b
             "a path that begins with /, or choose another folder with -o",
             p->key, dir, BRC_TEXT_SIZE - 1, name);
     strcat(path, last);
-    const struct brc_case_entry *e =
-        brc_case_find_entry(c, "specimen", p->key, brc_specimen_param_list);
+    const struct brc_casefile_entry *e =
+        brc_casefile_find_entry(c, "specimen", p->key, brc_specimen_param_list);
     if (e && strcmp(e->text, path) == 0)
         return 0;
-    return brc_case_write(ctx, c, "specimen", p->key, brc_specimen_param_list, path);
+    return brc_casefile_write(ctx, c, "specimen", p->key, brc_specimen_param_list, path);
 }
 
-static int keep_files(struct brc_context *ctx, const struct brc_job *job, const char *dir,
-                      struct brc_case *c)
+static int keep_files(struct brc_context *ctx, const struct brc_case *run_case, const char *dir,
+                      struct brc_casefile *c)
 {
-    struct brc_specimen_params specimen = job->specimen;
+    struct brc_specimen_params specimen = run_case->specimen;
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_job_names_file("specimen", p))
+        if (brc_case_names_file("specimen", p))
             BRC_TRY(keep_file(ctx, c, p, text_of(p, &specimen), dir));
     }
     return 0;
@@ -159,81 +159,83 @@ static struct brc_param_list list_of(const char *section)
 {
     const char *name;
     struct brc_param_list list;
-    for (int i = 0; brc_job_section(i, &name, &list); i++)
+    for (int i = 0; brc_case_section(i, &name, &list); i++)
         if (strcmp(name, section) == 0)
             return list;
-    return brc_case_param_list;
+    return brc_casefile_param_list;
 }
 
 /* Of several overrides of a key the last one holds. */
-static int keep_overrides(struct brc_context *ctx, const struct brc_case *from, struct brc_case *c)
+static int keep_overrides(struct brc_context *ctx, const struct brc_casefile *from,
+                          struct brc_casefile *c)
 {
     for (size_t i = 0; i < from->n; i++) {
-        const struct brc_case_entry *e = &from->entries[i];
+        const struct brc_casefile_entry *e = &from->entries[i];
         const struct brc_param_list list = list_of(e->section);
-        const char *key = brc_case_key(e, list);
-        if (e->is_override && brc_case_find_entry(from, e->section, key, list) == e)
-            BRC_TRY(brc_case_write(ctx, c, e->section, key, list, e->text));
+        const char *key = brc_casefile_key(e, list);
+        if (e->is_override && brc_casefile_find_entry(from, e->section, key, list) == e)
+            BRC_TRY(brc_casefile_write(ctx, c, e->section, key, list, e->text));
     }
     return 0;
 }
 
 /* Keys of the file that an override has made meaningless: without the override's name they would be
  * errors. */
-static int drop_meaningless(struct brc_context *ctx, const struct brc_job *job, struct brc_case *c)
+static int drop_meaningless(struct brc_context *ctx, const struct brc_case *run_case,
+                            struct brc_casefile *c)
 {
     const char *section, *clause;
     struct brc_param_list list;
-    for (int i = 0; brc_job_section(i, &section, &list); i++)
+    for (int i = 0; brc_case_section(i, &section, &list); i++)
         for (int k = 0; k < list.n; k++) {
-            BRC_TRY(brc_applies(ctx, job, section, &list.params[k], &clause));
+            BRC_TRY(brc_applies(ctx, run_case, section, &list.params[k], &clause));
             if (clause)
-                BRC_TRY(brc_case_remove(ctx, c, section, list.params[k].key, list));
+                BRC_TRY(brc_casefile_remove(ctx, c, section, list.params[k].key, list));
         }
     return 0;
 }
 
-static int write_kept(struct brc_context *ctx, const struct brc_job *job,
-                      const struct brc_model *model, const char *dir, struct brc_case *c)
+static int write_kept(struct brc_context *ctx, const struct brc_case *run_case,
+                      const struct brc_model *model, const char *dir, struct brc_casefile *c)
 {
-    const char *text = brc_case_text(&job->file);
-    BRC_TRY(brc_case_parse(ctx, job->file.path, text, strlen(text), c));
-    BRC_TRY(keep_overrides(ctx, &job->file, c));
-    BRC_TRY(drop_meaningless(ctx, job, c));
-    BRC_TRY(keep_files(ctx, job, dir, c));
+    const char *text = brc_casefile_text(&run_case->file);
+    BRC_TRY(brc_casefile_parse(ctx, run_case->file.path, text, strlen(text), c));
+    BRC_TRY(keep_overrides(ctx, &run_case->file, c));
+    BRC_TRY(drop_meaningless(ctx, run_case, c));
+    BRC_TRY(keep_files(ctx, run_case, dir, c));
     if (strcmp(c->head.model, model->name) == 0)
         return 0;
-    return brc_case_write(ctx, c, "", "model", brc_case_param_list, model->name);
+    return brc_casefile_write(ctx, c, "", "model", brc_casefile_param_list, model->name);
 }
 
-/* What is kept is read back: a case that does not make the same job is worse than none. */
-static int check_kept(struct brc_context *ctx, const struct brc_job *job,
+/* What is kept is read back: a case that does not make the same case is worse than none. */
+static int check_kept(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_model *model, const char *text)
 {
-    struct brc_job again;
-    int code = brc_job_parse(ctx, &again, job->file.path, text);
-    char *wanted = code == 0 ? brc_job_text(ctx, job, model) : NULL;
-    char *got = code == 0 ? brc_job_text(ctx, &again, model) : NULL;
+    struct brc_case again;
+    int code = brc_case_parse(ctx, &again, run_case->file.path, text);
+    char *wanted = code == 0 ? brc_case_text(ctx, run_case, model) : NULL;
+    char *got = code == 0 ? brc_case_text(ctx, &again, model) : NULL;
     if (code == 0)
-        code = !wanted || !got ? BRC_ERR_MEMORY : brc_job_same(ctx, wanted, got);
+        code = !wanted || !got ? BRC_ERR_MEMORY : brc_case_same(ctx, wanted, got);
     free(wanted);
     free(got);
-    brc_job_free(&again);
+    brc_case_free(&again);
     return code;
 }
 
-int brc_job_keep(struct brc_context *ctx, const struct brc_job *job, const struct brc_model *model,
-                 const char *dir, char **text)
+int brc_case_keep(struct brc_context *ctx, const struct brc_case *run_case,
+                  const struct brc_model *model, const char *dir, char **text)
 {
-    struct brc_case c;
-    int code = write_kept(ctx, job, model, dir, &c);
+    struct brc_casefile c;
+    int code = write_kept(ctx, run_case, model, dir, &c);
     if (code == 0)
-        code = check_kept(ctx, job, model, brc_case_text(&c));
+        code = check_kept(ctx, run_case, model, brc_casefile_text(&c));
     *text = NULL;
-    if (code == 0 && !(*text = brc_alloc(ctx, strlen(brc_case_text(&c)) + 1, 1)))
+    if (code == 0 && !(*text = brc_alloc(ctx, strlen(brc_casefile_text(&c)) + 1, 1)))
         code = BRC_ERR_MEMORY;
     if (code == 0)
-        strcpy(*text, brc_case_text(&c));
-    brc_case_free(&c);
+        strcpy(*text, brc_casefile_text(&c));
+    brc_casefile_free(&c);
     return code;
 }

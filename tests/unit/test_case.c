@@ -10,16 +10,16 @@ static struct brc_context ctx = BRC_CONTEXT_INIT;
 
 static void good(const char *text)
 {
-    struct brc_job job;
-    CHECK_OK(&ctx, brc_job_parse(&ctx, &job, "c.yaml", text));
-    brc_job_free(&job);
+    struct brc_case run_case;
+    CHECK_OK(&ctx, brc_case_parse(&ctx, &run_case, "c.yaml", text));
+    brc_case_free(&run_case);
 }
 
 static void bad(const char *text, const char *message)
 {
-    struct brc_job job;
-    CHECK_FAILS(&ctx, brc_job_parse(&ctx, &job, "c.yaml", text), BRC_ERR_INPUT, message);
-    brc_job_free(&job);
+    struct brc_case run_case;
+    CHECK_FAILS(&ctx, brc_case_parse(&ctx, &run_case, "c.yaml", text), BRC_ERR_INPUT, message);
+    brc_case_free(&run_case);
 }
 
 static void keys_of_another_kind_are_refused(void **state)
@@ -62,19 +62,19 @@ static void keys_of_another_kind_are_refused(void **state)
 /* Every declaration can be read. A key at its default is taken or refused by its declaration. */
 static void every_key_is_judged(void **state)
 {
-    struct brc_job job;
+    struct brc_case run_case;
     struct brc_param_list list;
     const char *section, *clause;
     int n_refused = 0, n_taken = 0;
     (void)state;
-    CHECK_OK(&ctx, brc_job_parse(&ctx, &job, "c.yaml", "breccia: 1\n"));
-    for (int i = 0; brc_job_section(i, &section, &list); i++)
+    CHECK_OK(&ctx, brc_case_parse(&ctx, &run_case, "c.yaml", "breccia: 1\n"));
+    for (int i = 0; brc_case_section(i, &section, &list); i++)
         for (int k = 0; k < list.n; k++) {
             const struct brc_param *p = &list.params[k];
             char text[512];
             if (!p->applies || !p->default_text)
                 continue;
-            CHECK_OK(&ctx, brc_applies(&ctx, &job, section, p, &clause));
+            CHECK_OK(&ctx, brc_applies(&ctx, &run_case, section, p, &clause));
             snprintf(text, sizeof text, "breccia: 1\n%s: {%s: '%s'}\n", section, p->key,
                      p->default_text);
             if (clause)
@@ -83,22 +83,22 @@ static void every_key_is_judged(void **state)
                 good(text);
             *(clause ? &n_refused : &n_taken) += 1;
         }
-    brc_job_free(&job);
+    brc_case_free(&run_case);
     assert_true(n_refused > 15 && n_taken > 15);
 }
 
 static void check_override(const char *text, const char *const *overrides, int n,
                            const char *message)
 {
-    struct brc_job job, changed;
-    CHECK_OK(&ctx, brc_job_parse(&ctx, &job, "c.yaml", text));
-    int code = brc_job_change(&ctx, &job, overrides, n, &changed);
+    struct brc_case run_case, changed;
+    CHECK_OK(&ctx, brc_case_parse(&ctx, &run_case, "c.yaml", text));
+    int code = brc_case_change(&ctx, &run_case, overrides, n, &changed);
     if (message)
         CHECK_FAILS(&ctx, code, BRC_ERR_INPUT, message);
     else
         CHECK_OK(&ctx, code);
-    brc_job_free(&changed);
-    brc_job_free(&job);
+    brc_case_free(&changed);
+    brc_case_free(&run_case);
 }
 
 static void an_override_makes_another_case(void **state)
@@ -117,16 +117,16 @@ static void an_override_makes_another_case(void **state)
 /* What a run keeps says only what counts. */
 static void check_kept(const char *text, const char *override, const char *expected)
 {
-    struct brc_job job, changed;
+    struct brc_case run_case, changed;
     char *kept;
-    CHECK_OK(&ctx, brc_job_parse(&ctx, &job, "c.yaml", text));
-    CHECK_OK(&ctx, brc_job_change(&ctx, &job, &override, 1, &changed));
-    CHECK_OK(&ctx, brc_job_keep(&ctx, &changed, brc_registry_find("vgcm"), "/tmp", &kept));
+    CHECK_OK(&ctx, brc_case_parse(&ctx, &run_case, "c.yaml", text));
+    CHECK_OK(&ctx, brc_case_change(&ctx, &run_case, &override, 1, &changed));
+    CHECK_OK(&ctx, brc_case_keep(&ctx, &changed, brc_registry_find("vgcm"), "/tmp", &kept));
     assert_string_equal(kept, expected);
     good(kept);
     free(kept);
-    brc_job_free(&changed);
-    brc_job_free(&job);
+    brc_case_free(&changed);
+    brc_case_free(&run_case);
 }
 
 static void keys_without_a_meaning_are_not_kept(void **state)

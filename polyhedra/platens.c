@@ -65,7 +65,7 @@ static void points_row(struct brc_sim *sim, const struct poly_state *st, size_t 
     }
 }
 
-void poly_walls(struct brc_sim *sim, void *state)
+void poly_platens(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
     struct brc_contacts *c = &sim->platens;
@@ -79,8 +79,8 @@ void poly_walls(struct brc_sim *sim, void *state)
             continue;
         struct poly_motion m;
         poly_start_motion(&m, sim, c->a[row], c->b[row]);
-        struct poly_sums s = {.gap = rows->wake[row] - sim->bodies.travel[c->a[row]] -
-                                     sim->bodies.travel[c->b[row]]};
+        struct poly_sums s = {.gap = rows->wake[row] - sim->bodies.path_length[c->a[row]] -
+                                     sim->bodies.path_length[c->b[row]]};
         struct poly_wrench hold = {0};
         if (c->status[row] == BRC_INTACT) {
             struct poly_bond bond;

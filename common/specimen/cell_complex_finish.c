@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The last steps of a complex: boundary vertices onto their planes, order, measures. */
-#include "common/specimen/complex.h"
+#include "common/specimen/cell_complex.h"
 
 #include "common/geometry/vec.h"
 
@@ -55,8 +55,8 @@ static void move_onto(double x[3], const struct brc_convex *domain, const struct
     }
 }
 
-int brc_complex_settle(struct brc_context *ctx, struct brc_complex *c,
-                       const struct brc_convex *domain)
+int brc_cell_complex_snap_to_planes(struct brc_context *ctx, struct brc_cell_complex *c,
+                                    const struct brc_convex *domain)
 {
     size_t n = 0;
     for (size_t f = 0; f < c->n_facets; f++)
@@ -97,12 +97,12 @@ static int by_key(const void *a, const void *b)
 }
 
 /* Order of the facets: cell, then inner ones by neighbour, then boundary ones by face. */
-static int sort_facets(struct brc_context *ctx, const struct brc_complex *c, struct key *keys,
+static int sort_facets(struct brc_context *ctx, const struct brc_cell_complex *c, struct key *keys,
                        size_t *n_keys)
 {
     size_t n = 0;
     for (size_t f = 0; f < c->n_facets; f++) {
-        const struct brc_complex_facet *facet = &c->facet[f];
+        const struct brc_cell_complex_facet *facet = &c->facet[f];
         if (facet->n == 0)
             continue;
         if (facet->face == BRC_FACE_OPEN)
@@ -121,7 +121,7 @@ static int sort_facets(struct brc_context *ctx, const struct brc_complex *c, str
     return 0;
 }
 
-static int allocate(struct brc_context *ctx, const struct brc_complex *c, size_t n,
+static int allocate(struct brc_context *ctx, const struct brc_cell_complex *c, size_t n,
                     struct brc_facets *out)
 {
     size_t n_loop = 0;
@@ -149,12 +149,12 @@ static int allocate(struct brc_context *ctx, const struct brc_complex *c, size_t
 }
 
 /* Copies the facets in order; vertices are numbered as they come. number is all -1. */
-static void copy_facets(const struct brc_complex *c, const struct key *keys, int32_t *number,
+static void copy_facets(const struct brc_cell_complex *c, const struct key *keys, int32_t *number,
                         struct brc_facets *out)
 {
     out->n_vertices = 0;
     for (size_t f = 0; f < out->n_facets; f++) {
-        const struct brc_complex_facet *from = &c->facet[keys[f].facet];
+        const struct brc_cell_complex_facet *from = &c->facet[keys[f].facet];
         out->cell[f][0] = from->cell[0];
         out->cell[f][1] = from->cell[1];
         out->face[f] = from->cell[1] < 0 ? from->face : -1;
@@ -219,7 +219,8 @@ static void measure_cell(struct brc_facets *out, size_t cell)
         brc_axpy(out->centre[cell], 1 / volume, moment);
 }
 
-int brc_complex_finish(struct brc_context *ctx, struct brc_complex *c, struct brc_facets *out)
+int brc_cell_complex_finish(struct brc_context *ctx, struct brc_cell_complex *c,
+                            struct brc_facets *out)
 {
     size_t n = 0;
     struct key *keys = brc_alloc(ctx, c->n_facets, sizeof *keys);

@@ -3,14 +3,14 @@
  * shared by all cells around them. Every decision (is this vertex outside, where is this edge cut,
  * which vertices are one) is taken once for a vertex or an edge, never once a cell, so that cells
  * cannot disagree about the polygon between them. */
-#ifndef BRC_COMPLEX_H
-#define BRC_COMPLEX_H
+#ifndef BRC_CELL_COMPLEX_H
+#define BRC_CELL_COMPLEX_H
 
 #include "common/specimen/facets.h"
 
 enum { BRC_FACE_INNER = -1, BRC_FACE_OPEN = -2 };
 
-struct brc_complex_facet {
+struct brc_cell_complex_facet {
     int32_t cell[2];  /* [1] = -1: the boundary, or a cell outside that is not kept */
     int32_t face;     /* domain plane id, BRC_FACE_INNER, BRC_FACE_OPEN towards a cell outside */
     int32_t n;        /* vertices; 0: removed */
@@ -18,35 +18,38 @@ struct brc_complex_facet {
     double normal[3]; /* unit, out of cell[0]; the loop turns counter-clockwise about it */
 };
 
-struct brc_complex {
+struct brc_cell_complex {
     size_t n_cells;
     size_t n_vertices, cap_vertices;
     double (*vertex)[3];
     size_t n_facets, cap_facets;
-    struct brc_complex_facet *facet;
+    struct brc_cell_complex_facet *facet;
     size_t n_loop, cap_loop;
     int32_t *loop;
 };
 
-void brc_complex_init(struct brc_complex *c, size_t n_cells);
-void brc_complex_free(struct brc_complex *c);
-int brc_complex_add_vertex(struct brc_context *ctx, struct brc_complex *c, const double x[3]);
+void brc_cell_complex_init(struct brc_cell_complex *c, size_t n_cells);
+void brc_cell_complex_free(struct brc_cell_complex *c);
+int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex *c,
+                                const double x[3]);
 /* Copies the facet and its loop; facet->first is set, a loop below 3 vertices is not added. */
-int brc_complex_add_facet(struct brc_context *ctx, struct brc_complex *c,
-                          const struct brc_complex_facet *facet, const int32_t *loop);
+int brc_cell_complex_add_facet(struct brc_context *ctx, struct brc_cell_complex *c,
+                               const struct brc_cell_complex_facet *facet, const int32_t *loop);
 /* Removes what lies outside the half-space and closes the cells there by facets with the plane's
  * id. Vertices within tolerance count as on the plane. */
-int brc_complex_clip(struct brc_context *ctx, struct brc_complex *c, const struct brc_plane *plane,
-                     double tolerance);
+int brc_cell_complex_clip(struct brc_context *ctx, struct brc_cell_complex *c,
+                          const struct brc_plane *plane, double tolerance);
 /* Makes vertices within tolerance one; removes facets narrower than tolerance, and the vertices
  * that are left in the middle of an edge. */
-int brc_complex_weld(struct brc_context *ctx, struct brc_complex *c, double tolerance);
+int brc_cell_complex_merge_vertices(struct brc_context *ctx, struct brc_cell_complex *c,
+                                    double tolerance);
 /* Sets is_empty[i] where cell i has no facet; returns the number of such cells. */
-size_t brc_complex_empty_cells(const struct brc_complex *c, uint8_t *is_empty);
+size_t brc_cell_complex_empty_cells(const struct brc_cell_complex *c, uint8_t *is_empty);
 /* Moves boundary vertices exactly onto their planes. */
-int brc_complex_settle(struct brc_context *ctx, struct brc_complex *c,
-                       const struct brc_convex *domain);
+int brc_cell_complex_snap_to_planes(struct brc_context *ctx, struct brc_cell_complex *c,
+                                    const struct brc_convex *domain);
 /* Sorts, measures and copies into the final form; the seeds are set already in out. */
-int brc_complex_finish(struct brc_context *ctx, struct brc_complex *c, struct brc_facets *out);
+int brc_cell_complex_finish(struct brc_context *ctx, struct brc_cell_complex *c,
+                            struct brc_facets *out);
 
 #endif

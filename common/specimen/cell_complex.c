@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/specimen/complex.h"
+#include "common/specimen/cell_complex.h"
 
 #include "common/base/grow.h"
 #include "common/geometry/vec.h"
@@ -17,7 +17,7 @@ struct edge {
 
 /* Work space of one clip. */
 struct clip {
-    struct brc_complex *c;
+    struct brc_cell_complex *c;
     const struct brc_plane *plane;
     size_t n_old;      /* vertices before the cut */
     double *height;    /* [n_old] signed distance from the plane */
@@ -31,21 +31,22 @@ struct clip {
     size_t n_cut, cap_cut, n_open, cap_open;
 };
 
-void brc_complex_init(struct brc_complex *c, size_t n_cells)
+void brc_cell_complex_init(struct brc_cell_complex *c, size_t n_cells)
 {
     memset(c, 0, sizeof *c);
     c->n_cells = n_cells;
 }
 
-void brc_complex_free(struct brc_complex *c)
+void brc_cell_complex_free(struct brc_cell_complex *c)
 {
     free(c->vertex);
     free(c->facet);
     free(c->loop);
-    brc_complex_init(c, 0);
+    brc_cell_complex_init(c, 0);
 }
 
-int brc_complex_add_vertex(struct brc_context *ctx, struct brc_complex *c, const double x[3])
+int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex *c,
+                                const double x[3])
 {
     if (c->n_vertices >= INT32_MAX)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "more than %d vertices; use fewer grains", INT32_MAX);
@@ -54,8 +55,8 @@ int brc_complex_add_vertex(struct brc_context *ctx, struct brc_complex *c, const
     return 0;
 }
 
-int brc_complex_add_facet(struct brc_context *ctx, struct brc_complex *c,
-                          const struct brc_complex_facet *facet, const int32_t *loop)
+int brc_cell_complex_add_facet(struct brc_context *ctx, struct brc_cell_complex *c,
+                               const struct brc_cell_complex_facet *facet, const int32_t *loop)
 {
     if (facet->n < 3)
         return 0;
@@ -69,7 +70,7 @@ int brc_complex_add_facet(struct brc_context *ctx, struct brc_complex *c,
     return 0;
 }
 
-size_t brc_complex_empty_cells(const struct brc_complex *c, uint8_t *is_empty)
+size_t brc_cell_complex_empty_cells(const struct brc_cell_complex *c, uint8_t *is_empty)
 {
     size_t n = c->n_cells;
     memset(is_empty, 1, c->n_cells);
@@ -86,7 +87,7 @@ size_t brc_complex_empty_cells(const struct brc_complex *c, uint8_t *is_empty)
 
 static int clip_begin(struct brc_context *ctx, struct clip *w, double tolerance)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     w->n_old = c->n_vertices;
     w->height = brc_alloc(ctx, w->n_old, sizeof *w->height);
     w->side = brc_alloc(ctx, w->n_old, sizeof *w->side);
@@ -147,9 +148,9 @@ static int push_edge(struct brc_context *ctx, struct edge **list, size_t *n, siz
  * the facets without a vertex inside. */
 static int find_cuts(struct brc_context *ctx, struct clip *w)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     for (size_t f = 0; f < c->n_facets; f++) {
-        struct brc_complex_facet *facet = &c->facet[f];
+        struct brc_cell_complex_facet *facet = &c->facet[f];
         const int32_t *loop = c->loop + facet->first;
         static const uint8_t state[3] = {HAS_IN, HAS_ON, HAS_OUT};
         for (int32_t i = 0; i < facet->n; i++)
@@ -189,7 +190,7 @@ static int make_vertices(struct brc_context *ctx, struct clip *w)
         brc_sub(e, w->c->vertex[v], w->c->vertex[u]);
         brc_copy(x, w->c->vertex[u]);
         brc_axpy(x, t, e);
-        BRC_TRY(brc_complex_add_vertex(ctx, w->c, x));
+        BRC_TRY(brc_cell_complex_add_vertex(ctx, w->c, x));
     }
     return 0;
 }
@@ -204,7 +205,7 @@ static int32_t cut_vertex(const struct clip *w, int32_t u, int32_t v)
 /* Replaces the loop of a facet by its part inside; the new loop lies at the end of the pool. */
 static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     int32_t n = c->facet[f].n, n_new = 0, n_leave = 0;
     if (n == 0 || !(w->state[f] & HAS_OUT))
         return 0;
@@ -233,9 +234,9 @@ static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
 /* Collects the edges in the plane of all facets of the cells that lost something. */
 static int find_open_edges(struct brc_context *ctx, struct clip *w)
 {
-    struct brc_complex *c = w->c;
+    struct brc_cell_complex *c = w->c;
     for (size_t f = 0; f < c->n_facets; f++) {
-        struct brc_complex_facet *facet = &c->facet[f];
+        struct brc_cell_complex_facet *facet = &c->facet[f];
         const int32_t *loop = c->loop + facet->first;
         for (int k = 0; k < 2 && (w->state[f] & (HAS_ON | HAS_OUT)); k++) {
             int32_t cell = facet->cell[k];
@@ -271,7 +272,7 @@ static void cancel_edges(struct clip *w)
 /* Closes one cell: its n open edges, walked backwards, bound its new facets. */
 static int close_cell(struct brc_context *ctx, struct clip *w, struct edge *open, size_t n)
 {
-    struct brc_complex_facet facet = {{open->cell, -1}, w->plane->id, 0, 0, {0, 0, 0}};
+    struct brc_cell_complex_facet facet = {{open->cell, -1}, w->plane->id, 0, 0, {0, 0, 0}};
     brc_copy(facet.normal, w->plane->n);
     BRC_GROW(ctx, w->work, w->cap_work, n);
     while (n > 0) {
@@ -290,7 +291,7 @@ static int close_cell(struct brc_context *ctx, struct clip *w, struct edge *open
             open[i] = open[--n];
             w->work[facet.n++] = e.to;
         }
-        BRC_TRY(brc_complex_add_facet(ctx, w->c, &facet, w->work));
+        BRC_TRY(brc_cell_complex_add_facet(ctx, w->c, &facet, w->work));
     }
     return 0;
 }
@@ -320,8 +321,8 @@ static int clip_all(struct brc_context *ctx, struct clip *w, double tolerance)
     return close_cells(ctx, w);
 }
 
-int brc_complex_clip(struct brc_context *ctx, struct brc_complex *c, const struct brc_plane *plane,
-                     double tolerance)
+int brc_cell_complex_clip(struct brc_context *ctx, struct brc_cell_complex *c,
+                          const struct brc_plane *plane, double tolerance)
 {
     struct clip w = {.c = c, .plane = plane};
     int code = clip_all(ctx, &w, tolerance);
