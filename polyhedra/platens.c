@@ -24,7 +24,7 @@ void poly_hold_law(struct poly_bond_result *r, const struct brc_sim *sim,
     struct poly_bond_pose pose;
     *bond = poly_bond_of(poly_params_of(sim), c->model_columns, row);
     bond->ktheta = 0;
-    if (brc_sim_platen(sim, c->b[row])->grip == BRC_GRIP_AXIAL)
+    if (brc_sim_platen(sim, c->b[row])->bonding == BRC_BONDING_GRIP)
         bond->kt = 0;
     poly_pose_bond(&pose, c, row, st, &sim->bodies, false);
     /* the platen is rigid and does not turn: its normal is the hold's */

@@ -90,7 +90,7 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     *poly_bond_length(rows, row) =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : brc_dot(d, p->n);
     fix_bond(sim, c, row, f->centroid[facet], n);
-    if (p->grip != BRC_GRIP_NONE && *poly_bond_area(rows, row) > 0)
+    if (p->bonding != BRC_BONDING_NONE && *poly_bond_area(rows, row) > 0)
         c->status[row] = BRC_INTACT;
 }
 

@@ -65,7 +65,7 @@ static void add_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
 {
     const struct brc_contacts *c = &sim->platens;
     const struct vgcm_points *p = vgcm_point_columns(c);
-    bool is_grip = brc_sim_platen(sim, c->b[i])->grip != BRC_GRIP_NONE;
+    bool is_grip = brc_sim_platen(sim, c->b[i])->bonding != BRC_BONDING_NONE;
     double kn = vgcm_columns(c)->kn[i];
     struct vgcm_bond bond = vgcm_springs_of(law, kn);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
@@ -149,7 +149,7 @@ static int list_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
         brc_axpy(spring.ra, p->law[j][VGCM_AT_S], f->s[i]);
         brc_axpy(spring.ra, p->law[j][VGCM_AT_T], t);
         spring.kn = f->kn[i] * p->law[j][VGCM_AREA];
-        spring.ks = platen->grip == BRC_GRIP_AXIAL ? 0 : law->eta * spring.kn;
+        spring.ks = platen->bonding == BRC_BONDING_GRIP ? 0 : law->eta * spring.kn;
         BRC_TRY(brc_springs_add(sim->ctx, out, &spring));
     }
     return 0;

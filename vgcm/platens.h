@@ -17,8 +17,8 @@ struct wall {
     struct vgcm_contacts *f;
     struct vgcm_points *p;
     const struct brc_platen *platen;
-    struct vgcm_law law; /* with the platen's friction */
-    enum brc_grip grip;  /* of the row: grains that come near later are not held */
+    struct vgcm_law law;      /* with the platen's friction */
+    enum brc_bonding bonding; /* of the row: grains that come near later are not held */
     struct vgcm_bond bond;
     double frame[3][3];  /* in space: normal from grain to platen, two axes of its plane */
     double riding[3][3]; /* frame that rides on the grain */
@@ -130,7 +130,7 @@ VGCM_INLINE void step_grip(const struct wall *w, struct wall_points *x, struct v
     brc_lanes s_old = q->s, t_old = q->t, half = 0.5 * w->bond.kn * x->area;
     q->pull = q->un; /* eq:vgcm:17 */
     e->normal += half * ((q->un - x->du[0] + q->un) * x->du[0]);
-    if (w->grip == BRC_GRIP_AXIAL)
+    if (w->bonding == BRC_BONDING_GRIP)
         return;
     q->s -= x->du[1]; /* eq:vgcm:16, eq:vgcm:18 */
     q->t -= x->du[2];
@@ -144,9 +144,9 @@ VGCM_INLINE void wall_drag(const struct wall *w, const struct wall_points *x, br
     brc_lanes none = brc_lanes_all(0);
     for (int k = 0; k < 3; k++)
         drag[k] = -w->viscosity * x->du[k];
-    if (w->grip == BRC_GRIP_AXIAL)
+    if (w->bonding == BRC_BONDING_GRIP)
         drag[1] = drag[2] = none;
-    if (w->grip != BRC_GRIP_NONE)
+    if (w->bonding != BRC_BONDING_NONE)
         return;
     brc_mask closed = brc_lanes_less(x->q.un, none);
     drag[0] = brc_lanes_max(drag[0], w->bond.kn * x->q.pull);
@@ -174,7 +174,7 @@ VGCM_INLINE void step_wall(struct wall *w, size_t i, size_t j, double above, int
     struct wall_points x;
     struct vgcm_rub_lanes *q = &x.q;
     read_points(w, i, j, above, &x);
-    if (w->grip != BRC_GRIP_NONE)
+    if (w->bonding != BRC_BONDING_NONE)
         step_grip(w, &x, &w->energy);
     else
         vgcm_lanes_rub(&w->bond, x.area, x.du, q, &w->energy);
@@ -212,7 +212,7 @@ static void begin_row(struct wall *w, size_t i)
     const struct brc_sim *sim = w->sim;
     w->platen = brc_sim_platen(sim, c->b[i]);
     w->law.mu = w->platen->friction;
-    w->grip = w->f->phase[i] == VGCM_SPHERE ? BRC_GRIP_NONE : w->platen->grip;
+    w->bonding = w->f->phase[i] == VGCM_SPHERE ? BRC_BONDING_NONE : w->platen->bonding;
     w->bond = vgcm_springs_of(&w->law, w->f->kn[i]);
     w->gap = brc_lanes_all(HUGE_VAL);
     w->viscosity = sim->dt > 0 ? w->law.viscous * sim->bodies.true_mass[c->a[i]] /

@@ -259,7 +259,7 @@ static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *p
             continue;
         p->law[to][VGCM_AT_S] = p->law[j][VGCM_AT_S];
         p->law[to][VGCM_AT_T] = p->law[j][VGCM_AT_T];
-        p->h[to] = platen->grip == BRC_GRIP_NONE ? p->h[j] : above;
+        p->h[to] = platen->bonding == BRC_BONDING_NONE ? p->h[j] : above;
         p->law[to++][VGCM_AREA] = p->law[j][VGCM_AREA];
     }
     c->np[i] = (int32_t)(to - (size_t)c->p0[i]);

@@ -4,11 +4,11 @@
 #ifndef BRC_RIG_H
 #define BRC_RIG_H
 
+#include "common/engine/platens.h"
 #include "common/input/params.h"
 
 enum brc_test { BRC_TEST_COMPRESSION, BRC_TEST_TENSION, BRC_TEST_BRAZILIAN, BRC_TEST_NONE };
 enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
-enum brc_grip { BRC_GRIP_NONE, BRC_GRIP_AXIAL, BRC_GRIP_FULL };
 
 #define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                              \
     CHOICE(kind, "compression|tension|brazilian|none", "compression",                            \
@@ -53,21 +53,6 @@ struct brc_test_params {
     BRC_PARAM_MEMBERS(BRC_TEST_PARAMS)
 };
 extern const struct brc_param_list brc_test_param_list;
-
-/* A rigid plane. Its body moves; n is fixed. Points count only within half_width of the
- * body's x along the direction `across` (infinite: HUGE_VAL). */
-struct brc_platen {
-    int32_t body;
-    double n[3];      /* unit, into the specimen */
-    double across[3]; /* unit, in the plane */
-    double half_width;
-    double friction;
-    enum brc_grip grip; /* BRC_GRIP_NONE: contact only; else the end facets are held, unbreakable */
-    double direction;   /* +1: moves along +n for a positive strain rate; -1 against */
-    double force;       /* N, along n, of the platen on the specimen */
-};
-
-enum { BRC_MAX_PLATENS = 6 };
 
 /* One row of the curve. */
 #define BRC_CURVE_FIELDS(SCALAR, VECTOR)                                                           \

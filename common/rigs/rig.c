@@ -93,10 +93,11 @@ static void place_platen(struct brc_sim *sim, int i, const double at[3], int axi
     struct brc_platen *p = &sim->rig.platen[i];
     bool plates = test->kind == BRC_TEST_BRAZILIAN && test->plate_width > 0;
     *p = (struct brc_platen){.body = (int32_t)sim->bodies.n_grains + i,
+                             .surface = plates ? BRC_SURFACE_STRIP : BRC_SURFACE_PLANE,
                              .half_width = plates ? test->plate_width / 2 : HUGE_VAL,
                              .friction = test->friction};
     if (test->kind == BRC_TEST_TENSION)
-        p->grip = test->grip == 0 ? BRC_GRIP_AXIAL : BRC_GRIP_FULL;
+        p->bonding = test->grip == 0 ? BRC_BONDING_GRIP : BRC_BONDING_FULL;
     p->n[axis] = sign;
     p->across[0] = 1;
     brc_copy(sim->bodies.x[p->body], at);

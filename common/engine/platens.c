@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which boundary facets face which platen. Models call it once, as they open contacts; it knows the
+ * specimen and the platens, no test and no model. */
+#include "common/engine/platens.h"
+
+#include "common/base/grow.h"
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
+
+#include <stdlib.h>
+
+/* A facet faces a platen within 30 degrees: the sides of a prism that stands for a cylinder stay
+ * out, the corners of its ends that a rough specimen has stay in. */
+static const double FACING = 0.86602540378443864676;
+/* It lies on a platen when it is parallel to it and this near, in lengths of the specimen: what the
+ * digits of a tessellation read from a file allow. */
+static const double ON_PLATEN = 1e-6;
+
+static int compare(const void *p, const void *q)
+{
+    const struct brc_facing *a = p, *b = q;
+    if (a->cell != b->cell)
+        return a->cell < b->cell ? -1 : 1;
+    if (a->body != b->body)
+        return a->body < b->body ? -1 : 1;
+    return (a->facet > b->facet) - (a->facet < b->facet);
+}
+
+int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_t *n)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    struct brc_facing *list = brc_alloc(sim->ctx, 0, sizeof *list);
+    size_t cap = 0, used = 0;
+    for (size_t i = 0; list && i < f->n_facets; i++) {
+        for (int k = 0; list && k < sim->rig.n_platens && f->cell[i][1] < 0; k++) {
+            const struct brc_platen *p = &sim->rig.platen[k];
+            double h, normal[3];
+            bool is_there =
+                brc_platen_height(p, sim->bodies.x[p->body], f->centroid[i], &h, normal);
+            double cosine = -brc_dot(f->normal[i], normal);
+            if (!is_there || !(cosine > FACING))
+                continue;
+            struct brc_facing *grown = brc_grown(sim->ctx, list, &cap, used + 1, sizeof *list);
+            if (!grown)
+                free(list);
+            list = grown;
+            if (list)
+                list[used++] = (struct brc_facing){.cell = f->cell[i][0],
+                                                   .body = p->body,
+                                                   .facet = (int32_t)i,
+                                                   .is_on = cosine > 1 - ON_PLATEN &&
+                                                            fabs(h) < ON_PLATEN * sim->rig.length};
+        }
+    }
+    if (!list)
+        return BRC_ERR_MEMORY;
+    qsort(list, used, sizeof *list, compare);
+    *out = list;
+    *n = used;
+    return 0;
+}
