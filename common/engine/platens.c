@@ -4,6 +4,7 @@
 #include "common/engine/platens.h"
 
 #include "common/base/grow.h"
+#include "common/engine/platen_surface.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
 
@@ -15,6 +16,19 @@ static const double FACING = 0.86602540378443864676;
 /* It lies on a platen when it is parallel to it and this near, in lengths of the specimen: what the
  * digits of a tessellation read from a file allow. */
 static const double ON_PLATEN = 1e-6;
+
+bool brc_platen_height(const struct brc_platen *p, const double at[3], const double x[3], double *h,
+                       double n[3])
+{
+    brc_lanes point[3], normal[3], height;
+    for (int k = 0; k < 3; k++)
+        point[k] = brc_lanes_all(x[k]);
+    bool is_there = brc_platen_heights(p, at, point, &height, normal)[0];
+    *h = height[0];
+    for (int k = 0; k < 3; k++)
+        n[k] = normal[k][0];
+    return is_there;
+}
 
 static int compare(const void *p, const void *q)
 {
