@@ -11,11 +11,11 @@
 #include "common/geometry/vec.h"
 #include "vgcm/vgcm.h"
 
-/* Four rows that are treated side by side, each operation below for all at once. Where there are
- * fewer the last one is repeated. */
-struct vgcm_rows {
+/* Four contacts that are treated side by side, each operation below for all at once. Where there
+ * are fewer the last one is repeated. */
+struct vgcm_index4 {
     int32_t at[BRC_LANES];
-    bool is_run; /* they follow each other */
+    bool is_consecutive; /* they follow each other */
 };
 
 struct vgcm_motion {
@@ -25,39 +25,41 @@ struct vgcm_motion {
     brc_lanes du[VGCM_N_MOTION]; /* increments of the generalised displacement */
 };
 
-/* Columns of four rows to and from lanes. */
-VGCM_INLINE brc_lanes vgcm_at(const double *x, const struct vgcm_rows *r)
+/* Columns of four contacts to and from lanes. */
+VGCM_INLINE brc_lanes vgcm_at(const double *x, const struct vgcm_index4 *r)
 {
     const int32_t *i = r->at;
-    return r->is_run ? brc_lanes_at(x + i[0]) : (brc_lanes){x[i[0]], x[i[1]], x[i[2]], x[i[3]]};
+    return r->is_consecutive ? brc_lanes_at(x + i[0])
+                             : (brc_lanes){x[i[0]], x[i[1]], x[i[2]], x[i[3]]};
 }
 
-VGCM_INLINE void vgcm_put(double *x, const struct vgcm_rows *r, brc_lanes a)
+VGCM_INLINE void vgcm_put(double *x, const struct vgcm_index4 *r, brc_lanes a)
 {
-    if (r->is_run)
+    if (r->is_consecutive)
         brc_lanes_put(x + r->at[0], a);
     else
-        for (int k = BRC_LANES - 1; k >= 0; k--) /* the first of equal rows is what stays */
+        for (int k = BRC_LANES - 1; k >= 0; k--) /* the first of equal contacts is what stays */
             x[r->at[k]] = a[k];
 }
 
-VGCM_INLINE void vgcm_at3(brc_lanes a[3], double (*x)[3], const struct vgcm_rows *r)
+VGCM_INLINE void vgcm_at3(brc_lanes a[3], double (*x)[3], const struct vgcm_index4 *r)
 {
-    if (r->is_run)
+    if (r->is_consecutive)
         brc_lanes_at3(a, x + r->at[0]);
     else
         brc_lanes_gather3(a, x, r->at);
 }
 
-VGCM_INLINE void vgcm_put3(double (*x)[3], const struct vgcm_rows *r, const brc_lanes a[3])
+VGCM_INLINE void vgcm_put3(double (*x)[3], const struct vgcm_index4 *r, const brc_lanes a[3])
 {
-    if (r->is_run)
+    if (r->is_consecutive)
         brc_lanes_put3(x + r->at[0], a);
     else
         brc_lanes_scatter3(x, r->at, a);
 }
 
-/* Point j of a row with the shear stiffness ks [N/m], where its row has no field of its own. */
+/* Point j of a contact with the shear stiffness ks [N/m], where its contact has no field of its
+ * own. */
 static inline struct vgcm_point vgcm_point_at(const struct vgcm_points *p, size_t j, double un,
                                               double ks)
 {
@@ -88,20 +90,20 @@ VGCM_INLINE void vgcm_frame_turn(brc_lanes s1[3], const brc_lanes s[3], const br
 
 /* Frames and increments of four contacts over the step that has just been made. */
 VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct brc_contacts *c,
-                                const struct vgcm_rows *rows, double dt, struct vgcm_motion *m)
+                                const struct vgcm_index4 *index, double dt, struct vgcm_motion *m)
 {
     const struct vgcm_contacts *f = vgcm_columns(c);
-    const int32_t *i = rows->at, a[] = {c->a[i[0]], c->a[i[1]], c->a[i[2]], c->a[i[3]]};
+    const int32_t *i = index->at, a[] = {c->a[i[0]], c->a[i[1]], c->a[i[2]], c->a[i[3]]};
     const int32_t b[] = {c->b[i[0]], c->b[i[1]], c->b[i[2]], c->b[i[3]]};
     brc_lanes x[3], v[3], wa[3], wb[3], n0[3], s0[3], nm[3], sm[3], tm[3], half[3];
     brc_lanes_between3(x, bodies->x, a, b);
     brc_lanes_between3(v, bodies->v, a, b);
     brc_lanes_gather3(wa, bodies->w, a);
     brc_lanes_gather3(wb, bodies->w, b);
-    vgcm_at3(n0, f->n, rows);
-    vgcm_at3(s0, f->s, rows);
+    vgcm_at3(n0, f->n, index);
+    vgcm_at3(s0, f->s, index);
     m->d = brc_lanes_sqrt(brc_lanes_dot(x, x));
-    m->h = 0.5 * m->d + vgcm_at(f->plane, rows); /* eq:vgcm:7 eq:vgcm:8 */
+    m->h = 0.5 * m->d + vgcm_at(f->plane, index); /* eq:vgcm:7 eq:vgcm:8 */
     brc_lanes inv = 1 / m->d;
     for (int k = 0; k < 3; k++) {
         m->n[k] = x[k] * inv; /* eq:vgcm:6 */
@@ -203,14 +205,14 @@ VGCM_INLINE void vgcm_force_of(brc_lanes f[3], brc_lanes ta[3], brc_lanes tb[3],
     }
 }
 
-/* The same for the sums on the bodies of four rows; the rows keep the force. */
+/* The same for the sums on the bodies of four contacts; the contacts keep the force. */
 VGCM_INLINE void vgcm_force_apply(const struct brc_bodies *bodies, struct brc_contacts *c,
-                                  const struct vgcm_rows *rows, brc_mask live,
+                                  const struct vgcm_index4 *index, brc_mask live,
                                   const struct vgcm_motion *m, const brc_lanes sum[VGCM_N_MOTION])
 {
     brc_lanes f[4], ta[4], tb[4];
     vgcm_force_of(f, ta, tb, m, sum);
-    vgcm_put3(c->f, rows, f);
+    vgcm_put3(c->f, index, f);
     for (int k = 0; k < 3; k++) {
         f[k] = brc_lanes_where(live, f[k]);
         ta[k] = brc_lanes_where(live, ta[k]);
@@ -221,7 +223,7 @@ VGCM_INLINE void vgcm_force_apply(const struct brc_bodies *bodies, struct brc_co
     brc_lanes_transpose(ta);
     brc_lanes_transpose(tb);
     for (int k = 0; k < BRC_LANES; k++) {
-        double *a = bodies->sum[c->a[rows->at[k]]], *b = bodies->sum[c->b[rows->at[k]]];
+        double *a = bodies->sum[c->a[index->at[k]]], *b = bodies->sum[c->b[index->at[k]]];
         brc_lanes_put(a, brc_lanes_at(a) - f[k]);
         brc_lanes_put(a + 4, brc_lanes_at(a + 4) + ta[k]);
         brc_lanes_put(b, brc_lanes_at(b) + f[k]);

@@ -2,7 +2,7 @@
 /* Energy, springs and strength left, from the state alone. */
 #include "vgcm/contact.h"
 
-/* State of point j of row i with its forces [N]. */
+/* State of point j of contact i with its forces [N]. */
 static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgcm_bond *bond,
                                   size_t i, size_t j, int flags)
 {
@@ -60,8 +60,8 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     }
 }
 
-static void add_wall(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
-                     double stored[3])
+static void add_platen(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                       double stored[3])
 {
     const struct brc_contacts *c = &sim->platens;
     const struct vgcm_points *p = vgcm_point_columns(c);
@@ -82,17 +82,17 @@ void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, d
     for (size_t i = 0; i < sim->pairs.n; i++)
         add_pair(sim, law, i, stored);
     for (size_t i = 0; i < sim->platens.n; i++)
-        add_wall(sim, law, i, stored);
+        add_platen(sim, law, i, stored);
 }
 
-double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t row)
+double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact)
 {
     const struct vgcm_points *p = vgcm_point_columns(c);
     int flags = vgcm_law_flags(law);
     double whole = 0, left = 0;
-    if (vgcm_columns(c)->phase[row] == VGCM_AFFINE)
+    if (vgcm_columns(c)->phase[contact] == VGCM_AFFINE)
         return 1;
-    for (size_t j = (size_t)c->p0[row], end = j + (size_t)c->np[row]; j < end; j++) {
+    for (size_t j = (size_t)c->p0[contact], end = j + (size_t)c->np[contact]; j < end; j++) {
         brc_lanes dn = brc_lanes_all(p->law[j][VGCM_DN]), ds = brc_lanes_all(p->law[j][VGCM_DS]);
         double area = p->law[j][VGCM_AREA];
         whole += area;
@@ -110,9 +110,9 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     const struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
     struct vgcm_motion m;
-    int32_t row = (int32_t)i;
-    const struct vgcm_rows rows = {.at = {row, row, row, row}};
-    vgcm_motion_of(&sim->bodies, c, &rows, 0, &m);
+    int32_t contact = (int32_t)i;
+    const struct vgcm_index4 index = {.at = {contact, contact, contact, contact}};
+    vgcm_motion_of(&sim->bodies, c, &index, 0, &m);
     struct brc_spring spring = {.a = c->a[i], .b = c->b[i], .is_near = c->k[i][0] == 0};
     double s[3], t[3];
     brc_set(spring.n, m.n[0][0], m.n[1][0], m.n[2][0]);
@@ -131,8 +131,8 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     return 0;
 }
 
-static int list_wall(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
-                     struct brc_springs *out)
+static int list_platen(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                       struct brc_springs *out)
 {
     const struct brc_contacts *c = &sim->platens;
     const struct vgcm_contacts *f = vgcm_columns(c);
@@ -145,7 +145,7 @@ static int list_wall(const struct brc_sim *sim, const struct vgcm_law *law, size
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         brc_scale(spring.ra, f->n[i], p->h[j]);
         if (f->phase[i] == VGCM_SPHERE)
-            brc_scale(spring.ra, f->n[i], p->un[j] + f->rest[i]);
+            brc_scale(spring.ra, f->n[i], p->un[j] + f->contact_distance[i]);
         brc_axpy(spring.ra, p->law[j][VGCM_AT_S], f->s[i]);
         brc_axpy(spring.ra, p->law[j][VGCM_AT_T], t);
         spring.kn = f->kn[i] * p->law[j][VGCM_AREA];
@@ -161,6 +161,6 @@ int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
     for (size_t i = 0; i < sim->pairs.n; i++)
         BRC_TRY(list_pair(sim, law, i, out));
     for (size_t i = 0; i < sim->platens.n; i++)
-        BRC_TRY(list_wall(sim, law, i, out));
+        BRC_TRY(list_platen(sim, law, i, out));
     return 0;
 }

@@ -47,11 +47,11 @@ struct vgcm_bond {
 };
 
 struct vgcm_point {
-    double un;     /* m, opening */
-    double fn;     /* N, normal force, tension positive */
-    double fs, ft; /* N, shear force on b in the contact frame */
-    double dn, ds; /* damage by opening and by slip */
-    double lost;   /* J, dissipated until the damage was 1 */
+    double un;         /* m, opening */
+    double fn;         /* N, normal force, tension positive */
+    double fs, ft;     /* N, shear force on b in the contact frame */
+    double dn, ds;     /* damage by opening and by slip */
+    double dissipated; /* J, dissipated until the damage was 1 */
 };
 
 /* Energy of a step: changes of what is stored, and what was dissipated [J]. */
@@ -71,27 +71,28 @@ enum vgcm_bond_parts {
     VGCM_N_BOND
 };
 
-/* Points of four rows side by side: the law is written for these, in three parts that hand on what
- * is listed here. Forces are those per area and stiffness, so that they are displacements, too. */
+/* Points of four contacts side by side: the law is written for these, in three parts that hand on
+ * what is listed here. Forces are those per area and stiffness, so that they are displacements,
+ * too. */
 struct vgcm_point_lanes {
-    brc_lanes dn, ds;         /* damage by opening and by slip */
-    brc_lanes slip_s, slip_t; /* m, plastic slip */
-    brc_lanes un, un_old;     /* m, opening, before the step */
-    brc_lanes damage_old;     /* dn + ds before the step */
-    brc_mask was;             /* not broken before the step */
-    brc_lanes pull_old, pull; /* m, normal force, tension positive */
-    brc_lanes secant;         /* m, tension at the peak strength, by the secant */
-    brc_lanes s_old, t_old;   /* m, shear force on b before the step */
-    brc_lanes s, t;           /* m, trial shear force on b */
-    brc_lanes force2, force;  /* m2, m: its square and size */
-    brc_lanes part;           /* of it that is left */
-    bool slides;              /* some of them do; else force is not set */
-    brc_mask loose;           /* were broken and open before the step */
+    brc_lanes dn, ds;                         /* damage by opening and by slip */
+    brc_lanes slip_s, slip_t;                 /* m, plastic slip */
+    brc_lanes un, un_old;                     /* m, opening, before the step */
+    brc_lanes damage_old;                     /* dn + ds before the step */
+    brc_mask was_intact;                      /* not broken before the step */
+    brc_lanes normal_force_old, normal_force; /* m, tension positive */
+    brc_lanes secant;                         /* m, tension at the peak strength, by the secant */
+    brc_lanes s_old, t_old;                   /* m, shear force on b before the step */
+    brc_lanes s, t;                           /* m, trial shear force on b */
+    brc_lanes force2, force;                  /* m2, m: its square and size */
+    brc_lanes shear_ratio;                    /* what the strength leaves of it */
+    bool slides;                              /* some of them do; else force is not set */
+    brc_mask loose;                           /* were broken and open before the step */
 };
 
 /* The same for points without a bond: opening, normal force, shear force on b. */
-struct vgcm_rub_lanes {
-    brc_lanes un, pull, s, t; /* m */
+struct vgcm_friction_lanes {
+    brc_lanes un, normal_force, s, t; /* m */
 };
 
 /* What is added up over steps [J]. */
@@ -209,18 +210,18 @@ static inline bool vgcm_law_is_whole(const struct vgcm_law *law, int flags, doub
 }
 
 /* Normal force: tension falls with the strength, compression is never weakened. */
-VGCM_INLINE brc_lanes vgcm_lanes_pull(brc_lanes un, brc_lanes secant, brc_lanes strength)
+VGCM_INLINE brc_lanes vgcm_lanes_normal_force(brc_lanes un, brc_lanes secant, brc_lanes strength)
 {
     brc_lanes weak = secant * strength; /* eq:vgcm:32 */
     return brc_lanes_pick(brc_lanes_less(brc_lanes_all(0), un), weak, un);
 }
 
 /* Shear strength [m] under a normal force. */
-VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, brc_lanes e0, brc_lanes pull,
-                                       brc_lanes strength)
+VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, brc_lanes e0,
+                                       brc_lanes normal_force, brc_lanes strength)
 {
     double mu = law->eta > 0 ? law->mu / law->eta : 0;
-    brc_lanes limit = e0 * strength - mu * pull; /* eq:vgcm:33 */
+    brc_lanes limit = e0 * strength - mu * normal_force; /* eq:vgcm:33 */
     return brc_lanes_max(limit, brc_lanes_all(0));
 }
 
@@ -231,7 +232,7 @@ VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bon
 {
     brc_lanes strength = vgcm_lanes_left(law, flags, p->dn, p->ds), old = p->un_old;
     brc_mask whole = vgcm_lanes_whole(law, flags, p->dn, p->ds);
-    p->was = whole;
+    p->was_intact = whole;
     p->secant = p->un;
     if (flags & VGCM_BRITTLE) {
         brc_mask grew = brc_lanes_less(bond[VGCM_U0], p->un);
@@ -245,7 +246,7 @@ VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bon
         p->secant *= inv * before;
         p->dn = dn;
     }
-    p->pull_old = vgcm_lanes_pull(p->un_old, old, strength);
+    p->normal_force_old = vgcm_lanes_normal_force(p->un_old, old, strength);
 }
 
 /* Shear: trial force, then back to the strength, which falls with the slip. In terms of the
@@ -255,10 +256,10 @@ VGCM_INLINE void vgcm_lanes_slide(const struct vgcm_law *law, const brc_lanes bo
                                   int flags, struct vgcm_point_lanes *p)
 {
     brc_lanes e0 = bond[VGCM_E0], strength = vgcm_lanes_left(law, flags, p->dn, p->ds);
-    p->pull = vgcm_lanes_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
-    brc_lanes limit = vgcm_lanes_limit(law, e0, p->pull, strength);
+    p->normal_force = vgcm_lanes_normal_force(p->un, p->secant, strength); /* eq:vgcm:17 */
+    brc_lanes limit = vgcm_lanes_limit(law, e0, p->normal_force, strength);
     brc_mask cut = brc_lanes_less(limit * limit, p->force2);
-    p->part = brc_lanes_all(1);
+    p->shear_ratio = brc_lanes_all(1);
     p->slides = brc_lanes_any(cut);
     if (!p->slides)
         return;
@@ -269,10 +270,10 @@ VGCM_INLINE void vgcm_lanes_slide(const struct vgcm_law *law, const brc_lanes bo
     else
         p->ds += brc_lanes_where(weakened, (force - limit) * bond[VGCM_PER_WS]);
     strength = vgcm_lanes_left(law, flags, p->dn, p->ds);
-    p->pull = vgcm_lanes_pull(p->un, p->secant, strength); /* eq:vgcm:17 */
-    limit = vgcm_lanes_limit(law, e0, p->pull, strength);
+    p->normal_force = vgcm_lanes_normal_force(p->un, p->secant, strength); /* eq:vgcm:17 */
+    limit = vgcm_lanes_limit(law, e0, p->normal_force, strength);
     p->force = force;
-    p->part = brc_lanes_pick(cut, limit * inv, p->part);
+    p->shear_ratio = brc_lanes_pick(cut, limit * inv, p->shear_ratio);
 }
 
 /* Energies of a step in which some point is broken: what the others keep in their bonds; contact
@@ -298,32 +299,34 @@ VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
 {
     brc_lanes none = brc_lanes_all(0), half_kn = bond[VGCM_HALF_KN], half_ks = bond[VGCM_HALF_KS];
     brc_lanes damage = p->dn + p->ds;
-    brc_mask was = p->was, is = vgcm_lanes_whole(law, flags, p->dn, p->ds);
-    brc_lanes stored = half_kn * (p->pull * p->un),
-              stored_old = half_kn * (p->pull_old * p->un_old);
-    brc_lanes excess = half_kn * (p->pull_old * p->un - p->pull * p->un_old); /* work - stored */
+    brc_mask was = p->was_intact, is = vgcm_lanes_whole(law, flags, p->dn, p->ds);
+    brc_lanes stored = half_kn * (p->normal_force * p->un),
+              stored_old = half_kn * (p->normal_force_old * p->un_old);
+    brc_lanes excess =
+        half_kn * (p->normal_force_old * p->un - p->normal_force * p->un_old); /* work - stored */
     brc_mask weakened = was & brc_lanes_less(p->damage_old, damage);
-    brc_lanes loss = brc_lanes_where(weakened, excess), lost = area * loss, left2 = p->force2;
+    brc_lanes loss = brc_lanes_where(weakened, excess), dissipated = area * loss, left2 = p->force2;
     if (p->slides) {
-        /* the plastic slip is along the trial force, of which 1 - part is cut off */
-        brc_lanes off = 1 - p->part;
-        left2 *= p->part;
+        /* the plastic slip is along the trial force, of which 1 - shear_ratio is cut off */
+        brc_lanes off = 1 - p->shear_ratio;
+        left2 *= p->shear_ratio;
         brc_lanes slid = half_ks * (off * (p->s_old * p->s + p->t_old * p->t + left2));
-        brc_lanes push = brc_lanes_max(-p->pull, none);
-        brc_lanes rub = (2 * law->mu) * half_kn * (push * (off * p->force));
-        rub = area * brc_lanes_pick(was, brc_lanes_min(rub, brc_lanes_max(slid, none)), slid);
-        left2 *= p->part;
-        lost += area * slid;
+        brc_lanes push = brc_lanes_max(-p->normal_force, none);
+        brc_lanes friction = (2 * law->mu) * half_kn * (push * (off * p->force));
+        friction =
+            area * brc_lanes_pick(was, brc_lanes_min(friction, brc_lanes_max(slid, none)), slid);
+        left2 *= p->shear_ratio;
+        dissipated += area * slid;
         if (flags & VGCM_LEDGER) {
-            e->damage -= rub;
-            e->friction += rub;
+            e->damage -= friction;
+            e->friction += friction;
         }
     }
     if (flags & VGCM_LEDGER) {
         brc_lanes shear = half_ks * left2;
         brc_lanes shear_old = half_ks * (p->s_old * p->s_old + p->t_old * p->t_old);
         brc_lanes kept = stored - stored_old + (excess - loss) + (shear - shear_old);
-        e->damage += lost;
+        e->damage += dissipated;
         if (brc_lanes_any(~is)) {
             const brc_lanes all[2] = {stored, shear}, old[2] = {stored_old, shear_old};
             vgcm_lanes_account_broken(was, is, area, kept, all, old, stored - stored_old + excess,
@@ -332,7 +335,7 @@ VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
             e->bond += area * kept;
         }
     }
-    return brc_lanes_where(was, lost);
+    return brc_lanes_where(was, dissipated);
 }
 
 /* The bond of a contact with ks and the strengths of the law, in each place. */
@@ -365,11 +368,11 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
     vgcm_lanes_bond_of(bond, all);
     vgcm_lanes_open(bond->law, all, flags, &q);
     vgcm_lanes_slide(bond->law, all, flags, &q);
-    p->lost += vgcm_lanes_account(bond->law, all, flags, brc_lanes_all(area), &q, &sum)[0];
+    p->dissipated += vgcm_lanes_account(bond->law, all, flags, brc_lanes_all(area), &q, &sum)[0];
     p->un = q.un[0];
-    p->fn = kn * q.pull[0];
-    p->fs = ks * (q.part[0] * s);
-    p->ft = ks * (q.part[0] * t);
+    p->fn = kn * q.normal_force[0];
+    p->fs = ks * (q.shear_ratio[0] * s);
+    p->ft = ks * (q.shear_ratio[0] * t);
     p->dn = q.dn[0];
     p->ds = q.ds[0];
     e->bond += sum.bond[0];
@@ -379,38 +382,39 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
     e->friction += sum.friction[0];
 }
 
-/* Points that are broken from the start: they push and rub. un: after the step. */
-VGCM_INLINE void vgcm_lanes_rub(const struct vgcm_bond *bond, brc_lanes area, const brc_lanes du[3],
-                                struct vgcm_rub_lanes *q, struct vgcm_energy_lanes *e)
+/* Points that are broken from the start: they push and slide with friction. un: after the step. */
+VGCM_INLINE void vgcm_lanes_friction(const struct vgcm_bond *bond, brc_lanes area,
+                                     const brc_lanes du[3], struct vgcm_friction_lanes *q,
+                                     struct vgcm_energy_lanes *e)
 {
     brc_lanes none = brc_lanes_all(0), un_old = q->un - du[0], s_old = q->s, t_old = q->t;
     brc_lanes s = s_old - du[1], t = t_old - du[2]; /* eq:vgcm:16, eq:vgcm:18 */
     brc_lanes force2 = s * s + t * t;
-    q->pull = brc_lanes_min(q->un, none); /* eq:vgcm:17 */
-    brc_lanes limit = vgcm_lanes_limit(bond->law, none, q->pull, none);
+    q->normal_force = brc_lanes_min(q->un, none); /* eq:vgcm:17 */
+    brc_lanes limit = vgcm_lanes_limit(bond->law, none, q->normal_force, none);
     brc_mask cut = brc_lanes_less(limit * limit, force2);
-    brc_lanes part = brc_lanes_pick(cut, limit / brc_lanes_sqrt(force2), brc_lanes_all(1));
-    q->s = part * s;
-    q->t = part * t;
+    brc_lanes ratio = brc_lanes_pick(cut, limit / brc_lanes_sqrt(force2), brc_lanes_all(1));
+    q->s = ratio * s;
+    q->t = ratio * t;
     brc_lanes half_kn = 0.5 * bond->kn * area, half_ks = 0.5 * bond->ks * area;
-    e->normal += half_kn * ((brc_lanes_min(un_old, none) + q->pull) * du[0]);
-    e->shear += half_ks * (part * part * force2 - (s_old * s_old + t_old * t_old));
-    e->friction += half_ks * ((1 - part) * (s_old * s + t_old * t + part * force2));
+    e->normal += half_kn * ((brc_lanes_min(un_old, none) + q->normal_force) * du[0]);
+    e->shear += half_ks * (ratio * ratio * force2 - (s_old * s_old + t_old * t_old));
+    e->friction += half_ks * ((1 - ratio) * (s_old * s + t_old * t + ratio * force2));
 }
 
 /* One of them alone. */
-static inline void vgcm_law_rub(const struct vgcm_bond *bond, double area, const double du[3],
-                                struct vgcm_point *p, struct vgcm_energy *e)
+static inline void vgcm_law_friction(const struct vgcm_bond *bond, double area, const double du[3],
+                                     struct vgcm_point *p, struct vgcm_energy *e)
 {
     double kn = bond->kn * area, ks = bond->ks * area, inv = bond->per_ks / area;
     const brc_lanes all[3] = {brc_lanes_all(du[0]), brc_lanes_all(du[1]), brc_lanes_all(du[2])};
-    struct vgcm_rub_lanes q = {.un = brc_lanes_all(p->un + du[0]),
-                               .s = brc_lanes_all(inv * p->fs),
-                               .t = brc_lanes_all(inv * p->ft)};
+    struct vgcm_friction_lanes q = {.un = brc_lanes_all(p->un + du[0]),
+                                    .s = brc_lanes_all(inv * p->fs),
+                                    .t = brc_lanes_all(inv * p->ft)};
     struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
-    vgcm_lanes_rub(bond, brc_lanes_all(area), all, &q, &sum);
+    vgcm_lanes_friction(bond, brc_lanes_all(area), all, &q, &sum);
     p->un = q.un[0];
-    p->fn = kn * q.pull[0];
+    p->fn = kn * q.normal_force[0];
     p->fs = ks * q.s[0];
     p->ft = ks * q.t[0];
     e->normal += sum.normal[0];
@@ -429,7 +433,7 @@ static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags, do
     brc_lanes all[VGCM_N_BOND];
     vgcm_lanes_bond_of(bond, all);
     vgcm_lanes_open(bond->law, all, flags, &q);
-    return bond->kn * area * q.pull_old[0];
+    return bond->kn * area * q.normal_force_old[0];
 }
 
 #endif

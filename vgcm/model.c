@@ -14,7 +14,8 @@ static const struct brc_param params[] = {BRC_PARAM_LIST(VGCM_PARAMS)};
 static const struct brc_field body_fields[] = {VGCM_BODY_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 #define BRC_OWNER struct vgcm_contacts
-static const struct brc_field contact_fields[] = {VGCM_CONTACT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+static const struct brc_field contact_fields[] = {
+    VGCM_CONTACT_FIELDS(BRC_FIELD, BRC_FIELD3, BRC_FIELD_RENAMED, BRC_FIELD3_RENAMED)};
 #undef BRC_OWNER
 #define BRC_OWNER struct vgcm_points
 static const struct brc_field point_fields[] = {VGCM_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
@@ -46,7 +47,7 @@ void vgcm_scale_params(struct vgcm_params *p, const struct brc_facets *facets)
     struct vgcm_census census;
     struct vgcm_law law;
     vgcm_law_of(&law, p);
-    vgcm_census_take(&census, p, facets);
+    vgcm_census_measure(&census, p, facets);
     law.eta = p->eta > 0 ? p->eta : 1;
     double kn = census.n_contacts > 0 ? law.e_bar / census.mean_distance : law.e_bar;
     double ratio = p->energy_ratio - (law.is_post_peak ? 1 : 0);
@@ -111,7 +112,7 @@ static int check(struct brc_context *ctx, const void *values, const struct brc_s
     struct vgcm_law law;
     vgcm_scale_params(p, &specimen->facets);
     vgcm_law_of(&law, p);
-    vgcm_census_take(&census, p, &specimen->facets);
+    vgcm_census_measure(&census, p, &specimen->facets);
     if (census.n_inner > 0 && census.n_contacts == 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "vgcm.interaction leaves none of the %zu facets as contacts: raise "
@@ -138,9 +139,9 @@ static int check(struct brc_context *ctx, const void *values, const struct brc_s
                         census.largest_distance);
 }
 
-static bool is_busy(const struct brc_contacts *c, size_t row)
+static bool is_busy(const struct brc_contacts *c, size_t contact)
 {
-    return vgcm_columns(c)->phase[row] == VGCM_POINTS;
+    return vgcm_columns(c)->phase[contact] == VGCM_POINTS;
 }
 
 static int create(struct brc_sim *sim, void **state)
@@ -151,7 +152,8 @@ static int create(struct brc_sim *sim, void **state)
     vgcm_scale_params(sim->params, &sim->specimen->facets);
     vgcm_law_of(&own->law, sim->params);
     sim->pairs.is_busy = is_busy;
-    sim->platens.lanes = BRC_LANES; /* platens.h takes so many points of a row at a time */
+    sim->platens.lanes =
+        BRC_LANES; /* platens_kernels.inc.h takes so many points of a contact at a time */
     *state = own;
     return 0;
 }
@@ -194,14 +196,14 @@ static int shape(struct brc_sim *sim, void *state)
 static int bond(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
-    return vgcm_bond_rows(sim, &own->law);
+    return vgcm_contacts_bond(sim, &own->law);
 }
 
 static int pairs(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
                  const struct brc_neighbours *platens)
 {
     const struct vgcm_state *own = state;
-    return vgcm_pair_rows(sim, &own->law, grains, platens);
+    return vgcm_contacts_update(sim, &own->law, grains, platens);
 }
 
 static void select_loops(struct brc_sim *sim, void *state)
@@ -247,10 +249,10 @@ static int springs(const struct brc_sim *sim, const void *state, struct brc_spri
     return vgcm_springs_list(sim, &own->law, out);
 }
 
-static double strength_left(const struct brc_sim *sim, const void *state, size_t row)
+static double strength_left(const struct brc_sim *sim, const void *state, size_t contact)
 {
     const struct vgcm_state *own = state;
-    return vgcm_strength_left(&sim->pairs, &own->law, row);
+    return vgcm_strength_left(&sim->pairs, &own->law, contact);
 }
 
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
@@ -262,7 +264,7 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
     const struct vgcm_state *own = state;
     const struct vgcm_params *p = sim->params;
     struct vgcm_census census;
-    vgcm_census_take(&census, p, &sim->specimen->facets);
+    vgcm_census_measure(&census, p, &sim->specimen->facets);
     double kn = census.mean_distance > 0 ? p->e_bar / census.mean_distance : 0, eta = p->eta;
     snprintf(text, size,
              "interaction %s: %zu of %zu inner facets, mean centre distance %.4g mm (gap %.4g mm); "

@@ -74,8 +74,8 @@ struct vgcm_bodies {
     VGCM_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3)
 };
 
-/* A row is a sphere contact (new neighbours), or a facet. The displacement of a facet's points is
- * the affine field u: exact, not an approximation, as each point's increment is affine in its
+/* A contact is a sphere contact (new neighbours), or a facet. The displacement of a facet's points
+ * is the affine field u: exact, not an approximation, as each point's increment is affine in its
  * place. While no point has been damaged nothing else is kept; then its plastic slip and damage.
  * The slip of a broken point that is open is not kept: it is the whole displacement. A facet is
  * loose where all of its points are broken and surely open: it has no forces. */
@@ -92,7 +92,7 @@ enum {
     VGCM_AT_S,
     VGCM_AT_T,
     VGCM_AREA,
-    VGCM_LOST,
+    VGCM_DISSIPATED,
     VGCM_SLIP_S,
     VGCM_SLIP_T,
     VGCM_DN,
@@ -100,21 +100,24 @@ enum {
     VGCM_N_POINT
 };
 
-#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR)                                                     \
+#define VGCM_CONTACT_FIELDS(SCALAR, VECTOR, RENAMED, VECTOR_RENAMED)                            \
     SCALAR(uint8_t, phase, BRC_STATE, "1",                                                      \
            "0 sphere contact, facets: 1 affine, 2 points, 3 loose")                             \
     SCALAR(double, kn, BRC_STATE, "Pa m-1", "normal stiffness per unit area")                   \
     SCALAR(double, plane, BRC_STATE, "m", "facet plane at d/2 + plane from a along n")          \
-    SCALAR(double, rim, BRC_STATE, "m", "largest distance of a point from the reference point") \
-    SCALAR(double, rest, BRC_STATE, "m", "sphere contact: distance where it begins; facets: 0") \
+    SCALAR(double, facet_radius, BRC_STATE, "m",                                                \
+           "largest distance of a point from the reference point")                              \
+    RENAMED(double, contact_distance, rest, BRC_STATE, "m",                                     \
+            "sphere contact: distance where it begins; facets: 0")                              \
     VECTOR(double, n, 3, BRC_STATE, "1", "contact normal from a to b; platens: carried by a")   \
     VECTOR(double, s, 3, BRC_STATE, "1", "first axis of the contact plane, carried along")      \
     VECTOR(double, u, 6, BRC_STATE, "m, 1", "facets: opening, slip s t, turn about n s t")      \
     VECTOR(double, moment, 6, BRC_STATE, "m2, m3, m4", "sums of A, A s, A t, A ss, A st, A tt") \
-    VECTOR(double, drag, 6, BRC_STATE, "N, N m", "viscous part of the generalised force")
+    VECTOR_RENAMED(double, viscous_force, drag, 6, BRC_STATE, "N, N m",                         \
+                   "viscous part of the generalised force")
 
 struct vgcm_contacts {
-    VGCM_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+    VGCM_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED, BRC_COLUMN3_RENAMED)
 };
 
 #define VGCM_POINT_FIELDS(SCALAR, VECTOR)                                                      \
@@ -146,7 +149,7 @@ static inline struct vgcm_points *vgcm_point_columns(const struct brc_contacts *
 /* model.c */
 void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *params);
 
-/* rows.c: which pairs interact, and the rows of new contacts */
+/* make_contacts.c: which pairs interact, and the contacts of new contacts */
 
 /* Facets that the interaction rule keeps. */
 struct vgcm_census {
@@ -157,18 +160,18 @@ struct vgcm_census {
     bool is_projected;
     struct brc_oblique oblique; /* of the areas that count */
 };
-void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
-                      const struct brc_facets *facets);
+void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *params,
+                         const struct brc_facets *facets);
 /* Fracture energies that are `auto`, which go along with the grain size; given ones stay. */
 void vgcm_scale_params(struct vgcm_params *params, const struct brc_facets *facets);
 /* Radius of a cell's sphere; for a plain Voronoi cell the largest about the seed that fits in. */
 double vgcm_radius(const struct brc_facets *facets, size_t cell);
-int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law);
-int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
-                   const struct brc_neighbours *grains, const struct brc_neighbours *platens);
+int vgcm_contacts_bond(struct brc_sim *sim, const struct vgcm_law *law);
+int vgcm_contacts_update(struct brc_sim *sim, const struct vgcm_law *law,
+                         const struct brc_neighbours *grains, const struct brc_neighbours *platens);
 
-/* forces.h and platens.h for each instruction set: the loops over contacts of grains, specialised
- * by the flags of law.h, and the loop over those with platens */
+/* forces_kernels.inc.h and platens_kernels.inc.h for each instruction set: the loops over contacts
+ * of grains, specialised by the flags of law.h, and the loop over those with platens */
 struct vgcm_loops {
     void (*forces[VGCM_N_LOOPS])(struct brc_sim *sim, const struct vgcm_law *law);
     void (*platens)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
@@ -177,8 +180,9 @@ extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2, vgcm_loops_avx5
 
 /* energy.c */
 void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3]);
-/* Tensile strength of a bonded row that its points have left, over that at the start, by area. */
-double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t row);
+/* Tensile strength of a bonded contact that its points have left, over that at the start, by area.
+ */
+double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact);
 int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
                       struct brc_springs *out);
 

@@ -40,9 +40,10 @@ struct brc_field {
 #define BRC_TYPE_OF(type) \
     _Generic((type)0, double : BRC_F64, int32_t : BRC_I32, uint8_t : BRC_U8, int64_t : BRC_I64)
 /* struct members: a column of scalars, a column of rows of n values */
-#define BRC_COLUMN(type, name, flags, unit, meaning)                   type *name;
-#define BRC_COLUMN3(type, name, n, flags, unit, meaning)               type(*name)[n];
-#define BRC_COLUMN_RENAMED(type, name, in_files, flags, unit, meaning) type *name;
+#define BRC_COLUMN(type, name, flags, unit, meaning)                       type *name;
+#define BRC_COLUMN3(type, name, n, flags, unit, meaning)                   type(*name)[n];
+#define BRC_COLUMN_RENAMED(type, name, in_files, flags, unit, meaning)     type *name;
+#define BRC_COLUMN3_RENAMED(type, name, in_files, n, flags, unit, meaning) type(*name)[n];
 /* descriptors; BRC_OWNER must name the struct while they are expanded */
 #define BRC_FIELD(type, name, flags, unit, meaning) \
     {#name, BRC_TYPE_OF(type), 1, flags, unit, meaning, offsetof(BRC_OWNER, name)},
@@ -51,6 +52,8 @@ struct brc_field {
 
 #define BRC_FIELD_RENAMED(type, name, in_files, flags, unit, meaning) \
     {#in_files, BRC_TYPE_OF(type), 1, flags, unit, meaning, offsetof(BRC_OWNER, name)},
+#define BRC_FIELD3_RENAMED(type, name, in_files, n, flags, unit, meaning) \
+    {#in_files, BRC_TYPE_OF(type), n, flags, unit, meaning, offsetof(BRC_OWNER, name)},
 
 /* A field list with the size of its owner struct; all zero for "no fields". */
 struct brc_fieldset {

@@ -26,10 +26,10 @@ static const double POINT_BYTES = 128, POINT_OPERATIONS = 95;
 static const double REFERENCE = 119.48e6;
 
 struct state {
-    size_t points, damaged, broken, contacts, rows_of_points, by_law; /* the last: points */
+    size_t points, damaged, broken, contacts, contacts_by_points, by_law; /* the last: points */
 };
 
-static struct state look(const struct brc_sim *sim)
+static struct state count_state(const struct brc_sim *sim)
 {
     const struct brc_contacts *c = &sim->pairs;
     const struct vgcm_points *p = vgcm_point_columns(c);
@@ -38,7 +38,7 @@ static struct state look(const struct brc_sim *sim)
         uint8_t phase = vgcm_columns(c)->phase[i];
         s.contacts += phase != VGCM_SPHERE;
         s.points += phase != VGCM_SPHERE ? (size_t)c->np[i] : 0;
-        s.rows_of_points += phase == VGCM_POINTS;
+        s.contacts_by_points += phase == VGCM_POINTS;
         s.by_law += phase == VGCM_POINTS ? (size_t)c->np[i] : 0;
         if (phase != VGCM_POINTS && phase != VGCM_LOOSE)
             continue;
@@ -129,7 +129,7 @@ static void time_points(struct brc_context *ctx, const struct brc_specimen *spec
     struct brc_sim sim;
     double total = 0;
     make(ctx, specimen, &sim, none, none);
-    struct state s = look(&sim), half = {0};
+    struct state s = count_state(&sim), half = {0};
     struct machine machine = machine_of(&s);
     double limit = machine_limit(&machine, &s);
     while (elastic.n < ELASTIC_REPEATS)
@@ -138,7 +138,7 @@ static void time_points(struct brc_context *ctx, const struct brc_specimen *spec
     while (!brc_rig_done(&sim) && !getenv("BENCH_SHORT")) {
         double time = time_steps(&sim, s.points, &total);
         if (sim.step % 100 == 0)
-            s = look(&sim);
+            s = count_state(&sim);
         double part = (double)s.damaged / (double)s.points;
         if (part > 0.45 && part < 0.55) {
             bench_note(&damaged, time);
@@ -150,7 +150,7 @@ static void time_points(struct brc_context *ctx, const struct brc_specimen *spec
         printf("vgcm: then %.3g of the points were damaged, %.3g broken, %.3g of the contacts by "
                "points\n",
                (double)half.damaged / (double)s.points, (double)half.broken / (double)s.points,
-               (double)half.rows_of_points / (double)s.contacts);
+               (double)half.contacts_by_points / (double)s.contacts);
         double mean = 1e9 * total / (double)sim.step / (double)s.points;
         bench_report(
             &(struct bench_value){"vgcm_ucs_mean_ns_point", mean, "ns/point", 8, limit, 0});

@@ -133,7 +133,7 @@ static void generators_are_not_oblique(void **state)
         CHECK_NEAR(o.mean_cos, 1, 1e-9, 0);
         CHECK_NEAR(o.soft, 1, 1e-8, 0);
         CHECK_NEAR(o.stiff, 1, 1e-8, 0);
-        vgcm_census_take(&census, f->sim.params, s);
+        vgcm_census_measure(&census, f->sim.params, s);
         assert_false(census.is_projected);
     }
 }

@@ -117,7 +117,7 @@ static void tension_peaks_at_the_strength_and_takes_the_fracture_energy(void **s
     assert_true(vgcm_law_damage(&d.p) == 1 && d.p.fn == 0);
     CHECK_NEAR(d.work, 64.6 * AREA, 0, 1e-6);
     CHECK_NEAR(d.e.damage, 64.6 * AREA, 0, 1e-6);
-    CHECK_NEAR(d.p.lost, d.e.damage, 0, 1e-12);
+    CHECK_NEAR(d.p.dissipated, d.e.damage, 0, 1e-12);
     CHECK_NEAR(d.e.bond + d.e.normal, 0, 1e-9 * d.work, 0);
     check_balance(&d);
 }
@@ -136,7 +136,7 @@ static void shear_takes_the_fracture_energy_in_any_direction(void **state)
         CHECK_NEAR(peak, 88.5e6 * AREA, 0, 1e-3);
         assert_true(vgcm_law_damage(&d.p) >= 1 && d.p.ds > d.p.dn);
         CHECK_NEAR(d.work, 31114.4 * AREA, 0, 1e-6);
-        CHECK_NEAR(d.p.lost, 31114.4 * AREA, 0, 1e-6);
+        CHECK_NEAR(d.p.dissipated, 31114.4 * AREA, 0, 1e-6);
         check_balance(&d);
     }
 }
@@ -165,7 +165,7 @@ static void brittle_points_lose_all_at_once(void **state)
     double us = law.tau / s.bond.ks;
     drive(&s, 0, 1.001 * us, 0, 1001);
     assert_true(s.p.fs == 0 && s.p.ds > s.p.dn);
-    CHECK_NEAR(s.p.lost, vgcm_law_elastic_s(&law, s.bond.kn) * AREA, 0, 3e-3);
+    CHECK_NEAR(s.p.dissipated, vgcm_law_elastic_s(&law, s.bond.kn) * AREA, 0, 3e-3);
     check_balance(&s);
 }
 
@@ -239,7 +239,7 @@ static void one_damage_alone_adds_nothing(void **state)
             CHECK_NEAR(own.p.fn, d.p.fn, 1e-12 * AREA * law.sigma_t, 1e-12);
             CHECK_NEAR(own.p.fs, d.p.fs, 1e-12 * AREA * law.tau, 1e-12);
         }
-        CHECK_NEAR(own.p.lost, (i == 0 ? law.g_fn : law.g_fs) * AREA, 0, 1e-4);
+        CHECK_NEAR(own.p.dissipated, (i == 0 ? law.g_fn : law.g_fs) * AREA, 0, 1e-4);
         check_balance(&own);
     }
 }
@@ -326,7 +326,7 @@ static void broken_points_follow_their_own_law(void **state)
     for (int i = 0; i < 3000; i++) {
         const double du[3] = {4e-8 * sin(0.01 * i), 2e-7 * cos(0.003 * i), 1e-7 * sin(0.02 * i)};
         vgcm_law_step(&d.bond, SOFT, AREA, du, &d.p, &d.e);
-        vgcm_law_rub(&own.bond, AREA, du, &own.p, &own.e);
+        vgcm_law_friction(&own.bond, AREA, du, &own.p, &own.e);
         CHECK_NEAR(own.p.fn, d.p.fn, 1e-12 * scale, 1e-12);
         CHECK_NEAR(own.p.fs, d.p.fs, 1e-12 * scale, 1e-12);
         CHECK_NEAR(own.p.ft, d.p.ft, 1e-12 * scale, 1e-12);

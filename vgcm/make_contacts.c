@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which pairs interact, and the rows of new contacts. */
+/* Which pairs interact, and the contacts of new contacts. */
 #include "vgcm/vgcm.h"
 
 #include "common/geometry/vec.h"
@@ -70,8 +70,8 @@ static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params
     return centre_distance(facets, facet) < ra + rb + census->gap;
 }
 
-void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *params,
-                      const struct brc_facets *facets)
+void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *params,
+                         const struct brc_facets *facets)
 {
     double diameters = 0, area = 0, sum = 0;
     *census = (struct vgcm_census){0};
@@ -104,10 +104,10 @@ void vgcm_census_take(struct vgcm_census *census, const struct vgcm_params *para
         brc_oblique_measure(&census->oblique, facets, facets->seed, true);
 }
 
-/* Adds the facet's points to row i, at their places (s, t, h) in the row's frame about origin, with
- * a part of their areas. */
+/* Adds the facet's points to contact i, at their places (s, t, h) in the contact's frame about
+ * origin, with that ratio of their areas. */
 static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, size_t facet,
-                      const double origin[3], double part)
+                      const double origin[3], double ratio)
 {
     const struct vgcm_params *params = sim->params;
     const struct brc_facets *facets = &sim->specimen->facets;
@@ -129,7 +129,7 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
             p->law[to][VGCM_AT_S] = brc_dot(r, f->s[i]);
             p->law[to][VGCM_AT_T] = brc_dot(r, t);
             p->h[to] = brc_dot(r, f->n[i]);
-            p->law[to][VGCM_AREA] = part * area[j];
+            p->law[to][VGCM_AREA] = ratio * area[j];
         }
     }
     free(x);
@@ -137,12 +137,12 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
     return code;
 }
 
-/* Area moments and rim of a row from its points. */
+/* Area moments and radius of a contact from its points. */
 static void set_moments(struct brc_contacts *c, size_t i)
 {
     struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
-    double *m = f->moment[i], rim2 = 0;
+    double *m = f->moment[i], radius2 = 0;
     for (int k = 0; k < VGCM_N_MOMENTS; k++)
         m[k] = 0;
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
@@ -153,13 +153,13 @@ static void set_moments(struct brc_contacts *c, size_t i)
         m[VGCM_A_SS] += area * s * s;
         m[VGCM_A_ST] += area * s * t;
         m[VGCM_A_TT] += area * t * t;
-        rim2 = fmax(rim2, s * s + t * t);
+        radius2 = fmax(radius2, s * s + t * t);
     }
-    f->rim[i] = sqrt(rim2);
+    f->facet_radius[i] = sqrt(radius2);
 }
 
-static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, size_t facet,
-                    double part)
+static int bond_contact(struct brc_sim *sim, const struct vgcm_law *law, size_t i, size_t facet,
+                        double ratio)
 {
     struct brc_contacts *c = &sim->pairs;
     const struct brc_bodies *b = &sim->bodies;
@@ -178,7 +178,7 @@ static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, s
     f->phase[i] = VGCM_AFFINE;
     f->kn[i] = law->e_bar / d; /* eq:vgcm:28 */
     f->plane[i] = h - d / 2;   /* (R_a - R_b)/2 - d_v; eq:vgcm:8 */
-    BRC_TRY(add_points(sim, c, i, facet, origin, part));
+    BRC_TRY(add_points(sim, c, i, facet, origin, ratio));
     set_moments(c, i);
     const double *m = f->moment[i];
     double k = f->kn[i] * fmax(1, law->eta), g = d - h, polar = m[VGCM_A_SS] + m[VGCM_A_TT];
@@ -191,8 +191,8 @@ static int bond_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i, s
  * the facets is three times the volume for any cells and centres, so that the mean stiffness over
  * all directions stays that of the continuum; no choice of a pair's stiffness does so direction by
  * direction (README.md). */
-static double part_of_area(const struct vgcm_census *census, const struct brc_facets *facets,
-                           size_t facet)
+static double area_ratio(const struct vgcm_census *census, const struct brc_facets *facets,
+                         size_t facet)
 {
     return census->is_projected ? fmax(brc_oblique_cos(facets, facets->seed, facet), LEAST_COS) : 1;
 }
@@ -201,7 +201,7 @@ static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
 {
     const struct brc_facets *facets = &sim->specimen->facets;
     struct vgcm_census census;
-    vgcm_census_take(&census, sim->params, facets);
+    vgcm_census_measure(&census, sim->params, facets);
     int32_t(*pair)[2] = brc_alloc(sim->ctx, census.n_contacts, sizeof *pair);
     size_t *facet = brc_alloc(sim->ctx, census.n_contacts, sizeof *facet), n = 0;
     int code = pair && facet ? 0 : BRC_ERR_MEMORY;
@@ -215,7 +215,7 @@ static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
     if (code == 0)
         code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
     for (size_t i = 0; code == 0 && i < n; i++)
-        code = bond_row(sim, law, i, facet[i], part_of_area(&census, facets, facet[i]));
+        code = bond_contact(sim, law, i, facet[i], area_ratio(&census, facets, facet[i]));
     free(pair);
     free(facet);
     return code;
@@ -266,7 +266,7 @@ static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *p
 }
 
 /* All points count from the start, closed or not: what the masses and the step must bear. */
-static void set_wall_stiffness(struct brc_contacts *c, size_t i, const struct vgcm_law *law)
+static void set_platen_stiffness(struct brc_contacts *c, size_t i, const struct vgcm_law *law)
 {
     const struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
@@ -278,7 +278,7 @@ static void set_wall_stiffness(struct brc_contacts *c, size_t i, const struct vg
     brc_set(c->k[i], k * f->moment[i][VGCM_A], k * moment, 0);
 }
 
-static int wall_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
+static int platen_contact(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
 {
     struct brc_contacts *c = &sim->platens;
     struct vgcm_contacts *f = vgcm_columns(c);
@@ -296,11 +296,11 @@ static int wall_row(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
             BRC_TRY(add_points(sim, c, i, (size_t)facets->cell_facet[k], sim->bodies.x[cell], 1));
     fit_points(sim, i, platen, above);
     set_moments(c, i);
-    set_wall_stiffness(c, i, law);
+    set_platen_stiffness(c, i, law);
     return 0;
 }
 
-/* Rows of all grains with a facet that faces a platen; NULL: counts them. */
+/* Contacts of all grains with a facet that faces a platen; NULL: counts them. */
 static size_t facing_pairs(const struct brc_sim *sim, int32_t (*pair)[2])
 {
     const struct brc_facets *facets = &sim->specimen->facets;
@@ -320,7 +320,7 @@ static size_t facing_pairs(const struct brc_sim *sim, int32_t (*pair)[2])
     return n;
 }
 
-int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law)
+int vgcm_contacts_bond(struct brc_sim *sim, const struct vgcm_law *law)
 {
     BRC_TRY(bond_pairs(sim, law));
     size_t n = facing_pairs(sim, NULL);
@@ -330,7 +330,7 @@ int vgcm_bond_rows(struct brc_sim *sim, const struct vgcm_law *law)
     facing_pairs(sim, pair);
     int code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
     for (size_t i = 0; code == 0 && i < n; i++)
-        code = wall_row(sim, law, i);
+        code = platen_contact(sim, law, i);
     free(pair);
     BRC_TRY(code);
     BRC_TRY(brc_contacts_compact(sim->ctx, &sim->pairs));
@@ -351,11 +351,12 @@ static double touching_distance(const struct brc_sim *sim, const int32_t pair[2]
     return touch + columns->radius[pair[1]];
 }
 
-/* Whether an existing row stays although the candidates no longer name it. */
-static bool must_stay(const struct brc_contacts *c, size_t row, bool is_wall)
+/* Whether an existing contact stays although the candidates no longer name it. */
+static bool must_stay(const struct brc_contacts *c, size_t contact, bool is_platen)
 {
-    bool is_facet = vgcm_columns(c)->phase[row] != VGCM_SPHERE;
-    return (is_facet && is_wall) || c->status[row] == BRC_INTACT || brc_norm2(c->f[row]) > 0;
+    bool is_facet = vgcm_columns(c)->phase[contact] != VGCM_SPHERE;
+    return (is_facet && is_platen) || c->status[contact] == BRC_INTACT ||
+           brc_norm2(c->f[contact]) > 0;
 }
 
 static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
@@ -369,53 +370,53 @@ static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
     return now < touch + sim->skin;
 }
 
-/* Sorted union of the rows that stay and the candidates that may touch. */
-static size_t merge_rows(const struct brc_sim *sim, const struct brc_contacts *c,
-                         const struct brc_neighbours *list, int32_t (*pair)[2])
+/* Sorted union of the contacts that stay and the candidates that may touch. */
+static size_t merge_contacts(const struct brc_sim *sim, const struct brc_contacts *c,
+                             const struct brc_neighbours *list, int32_t (*pair)[2])
 {
-    bool is_wall = c == &sim->platens;
-    size_t n = 0, row = 0, k = 0;
-    while (row < c->n || k < list->n) {
-        int64_t of_row = INT64_MAX, of_list = INT64_MAX;
-        if (row < c->n)
-            of_row = ((int64_t)c->a[row] << 32) | c->b[row];
+    bool is_platen = c == &sim->platens;
+    size_t n = 0, contact = 0, k = 0;
+    while (contact < c->n || k < list->n) {
+        int64_t of_contact = INT64_MAX, of_list = INT64_MAX;
+        if (contact < c->n)
+            of_contact = ((int64_t)c->a[contact] << 32) | c->b[contact];
         if (k < list->n)
             of_list = ((int64_t)list->pair[k][0] << 32) | list->pair[k][1];
-        int32_t next[2] = {(int32_t)((of_row < of_list ? of_row : of_list) >> 32),
-                           (int32_t)(of_row < of_list ? of_row : of_list)};
-        bool has_row = of_row <= of_list, is_listed = of_list <= of_row;
-        bool keep = has_row && must_stay(c, row, is_wall);
+        int32_t next[2] = {(int32_t)((of_contact < of_list ? of_contact : of_list) >> 32),
+                           (int32_t)(of_contact < of_list ? of_contact : of_list)};
+        bool has_contact = of_contact <= of_list, is_listed = of_list <= of_contact;
+        bool keep = has_contact && must_stay(c, contact, is_platen);
         if (!keep && is_listed)
-            keep = (has_row && c->status[row] == BRC_BROKEN) || may_open(sim, next);
+            keep = (has_contact && c->status[contact] == BRC_BROKEN) || may_open(sim, next);
         if (keep) {
             pair[n][0] = next[0];
             pair[n++][1] = next[1];
         }
-        row += has_row;
+        contact += has_contact;
         k += is_listed;
     }
     return n;
 }
 
 /* The one point of a new sphere contact, force-free as it is now. */
-static int sphere_row(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
-                      size_t i)
+static int sphere_contact(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
+                          size_t i)
 {
     const struct vgcm_bodies *columns = sim->bodies.model_columns;
-    bool is_wall = c == &sim->platens;
+    bool is_platen = c == &sim->platens;
     BRC_TRY(brc_contacts_points(sim->ctx, c, i, 1));
     struct vgcm_contacts *f = vgcm_columns(c);
     struct vgcm_points *p = vgcm_point_columns(c);
     const int32_t pair[2] = {c->a[i], c->b[i]};
     double now, touch = touching_distance(sim, pair, &now);
-    double ra = columns->radius[pair[0]], rb = is_wall ? ra : columns->radius[pair[1]];
+    double ra = columns->radius[pair[0]], rb = is_platen ? ra : columns->radius[pair[1]];
     f->phase[i] = VGCM_SPHERE;
     f->kn[i] = law->e_bar / touch; /* eq:vgcm:28 */
     f->plane[i] = (ra - rb) / 2;
-    f->rest[i] = fmin(touch, now);
+    f->contact_distance[i] = fmin(touch, now);
     c->gap[i] = fmax(now - touch, 0);
     p->law[c->p0[i]][VGCM_AREA] = BRC_PI * fmin(ra, rb) * fmin(ra, rb);
-    if (is_wall) {
+    if (is_platen) {
         const struct brc_platen *platen = brc_sim_platen(sim, pair[1]);
         brc_scale(f->n[i], platen->n, -1);
         brc_copy(f->s[i], platen->across);
@@ -426,13 +427,13 @@ static int sphere_row(struct brc_sim *sim, const struct vgcm_law *law, struct br
     return 0;
 }
 
-static int update_rows(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
-                       const struct brc_neighbours *list)
+static int update_contacts(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
+                           const struct brc_neighbours *list)
 {
     int32_t(*pair)[2] = brc_alloc(sim->ctx, c->n + list->n, sizeof *pair);
     if (!pair)
         return BRC_ERR_MEMORY;
-    size_t n = merge_rows(sim, c, list, pair);
+    size_t n = merge_contacts(sim, c, list, pair);
     int code = 0;
     bool same = n == c->n;
     for (size_t i = 0; same && i < n; i++)
@@ -442,14 +443,14 @@ static int update_rows(struct brc_sim *sim, const struct vgcm_law *law, struct b
     free(pair);
     for (size_t i = 0; code == 0 && i < n; i++)
         if (c->np[i] == 0 && vgcm_columns(c)->phase[i] == VGCM_SPHERE)
-            code = sphere_row(sim, law, c, i);
+            code = sphere_contact(sim, law, c, i);
     BRC_TRY(code);
     return brc_contacts_tidy(sim->ctx, c);
 }
 
-int vgcm_pair_rows(struct brc_sim *sim, const struct vgcm_law *law,
-                   const struct brc_neighbours *grains, const struct brc_neighbours *platens)
+int vgcm_contacts_update(struct brc_sim *sim, const struct vgcm_law *law,
+                         const struct brc_neighbours *grains, const struct brc_neighbours *platens)
 {
-    BRC_TRY(update_rows(sim, law, &sim->pairs, grains));
-    return update_rows(sim, law, &sim->platens, platens);
+    BRC_TRY(update_contacts(sim, law, &sim->pairs, grains));
+    return update_contacts(sim, law, &sim->platens, platens);
 }

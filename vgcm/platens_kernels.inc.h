@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over contacts of grains with platens, compiled for each instruction set; its rows are
- * few, so the flags are looked at as it runs. The points of boundary facets ride on the grain:
- * frame (n, s, t) of the row turns with it and a point is at h n + s s + t t from the centre. The
- * contact's own frame is fixed by the platen: normal out of the grain, against the platen's. All
- * vectors of a row are in that frame until its forces are summed up. */
-#ifndef VGCM_PLATENS_H
-#define VGCM_PLATENS_H
+/* The loop over contacts of grains with platens, compiled for each instruction set; its contacts
+ * are few, so the flags are looked at as it runs. The points of boundary facets ride on the grain:
+ * frame (n, s, t) of the contact turns with it and a point is at h n + s s + t t from the centre.
+ * The contact's own frame is fixed by the platen: normal out of the grain, against the platen's.
+ * All vectors of a contact are in that frame until its forces are summed up. */
+#ifndef VGCM_PLATENS_KERNELS_H
+#define VGCM_PLATENS_KERNELS_H
 
 #include "vgcm/contact.h"
 
 #include <string.h>
 
-struct wall {
+struct vgcm_platen_loop {
     struct brc_sim *sim;
     struct brc_contacts *c;
     struct vgcm_contacts *f;
     struct vgcm_points *p;
     const struct brc_platen *platen;
     struct vgcm_law law;      /* with the platen's friction */
-    enum brc_bonding bonding; /* of the row: grains that come near later are not held */
+    enum brc_bonding bonding; /* of the contact: grains that come near later are not held */
     struct vgcm_bond bond;
     double frame[3][3];  /* in space: normal from grain to platen, two axes of its plane */
     double riding[3][3]; /* frame that rides on the grain */
@@ -27,33 +27,33 @@ struct wall {
     double viscosity;    /* viscous force over area and increment */
     double viscous;      /* J */
     struct vgcm_energy_lanes energy;
-    brc_lanes force[6]; /* on the platen, moment about the grain */
-    brc_lanes drag[6];  /* the viscous part of it */
-    brc_lanes gap;      /* m, smallest opening */
+    brc_lanes force[6];         /* on the platen, moment about the grain */
+    brc_lanes viscous_force[6]; /* the viscous part of it */
+    brc_lanes gap;              /* m, smallest opening */
 };
 
-/* Four points of a row. */
-struct wall_points {
+/* Four points of a contact. */
+struct vgcm_platen_points {
     brc_mask live; /* lanes that are points; the others are room, without an area */
     brc_lanes area, r[3], du[3];
-    struct vgcm_rub_lanes q;
+    struct vgcm_friction_lanes q;
 };
 
 /* A vector of space in the contact's frame. */
-static void to_frame(const struct wall *w, double r[3], const double v[3])
+static void vgcm_platen_to_frame(const struct vgcm_platen_loop *w, double r[3], const double v[3])
 {
     for (int k = 0; k < 3; k++)
         r[k] = brc_dot(v, w->frame[k]);
 }
 
-static void to_space(const struct wall *w, double v[3], const double r[3])
+static void vgcm_platen_to_space(const struct vgcm_platen_loop *w, double v[3], const double r[3])
 {
     brc_scale(v, w->frame[0], r[0]);
     brc_axpy(v, r[1], w->frame[1]);
     brc_axpy(v, r[2], w->frame[2]);
 }
 
-static void set_frames(struct wall *w, size_t i)
+static void vgcm_platen_frames(struct vgcm_platen_loop *w, size_t i)
 {
     const struct brc_bodies *b = &w->sim->bodies;
     size_t a = (size_t)w->c->a[i];
@@ -73,15 +73,15 @@ static void set_frames(struct wall *w, size_t i)
     brc_cross(across, w->f->n[i], w->f->s[i]);
     brc_sub(move, b->v[w->c->b[i]], b->v[a]);
     brc_scale(move, move, dt);
-    to_frame(w, w->turn, turn);
-    to_frame(w, w->move, move);
-    to_frame(w, w->riding[0], w->f->n[i]);
-    to_frame(w, w->riding[1], w->f->s[i]);
-    to_frame(w, w->riding[2], across);
+    vgcm_platen_to_frame(w, w->turn, turn);
+    vgcm_platen_to_frame(w, w->move, move);
+    vgcm_platen_to_frame(w, w->riding[0], w->f->n[i]);
+    vgcm_platen_to_frame(w, w->riding[1], w->f->s[i]);
+    vgcm_platen_to_frame(w, w->riding[2], across);
 }
 
 /* Motion of the platen against the grain's points: opening, slips. */
-VGCM_INLINE void relative_motion(const struct wall *w, struct wall_points *x)
+VGCM_INLINE void vgcm_platen_motion(const struct vgcm_platen_loop *w, struct vgcm_platen_points *x)
 {
     brc_lanes turn[3], swing[3], middle[3];
     for (int k = 0; k < 3; k++)
@@ -94,9 +94,10 @@ VGCM_INLINE void relative_motion(const struct wall *w, struct wall_points *x)
         x->du[k] = w->move[k] - swing[k];
 }
 
-/* Four points of row i from point j on; above: distance of the grain's centre from the platen. */
-VGCM_INLINE void read_points(const struct wall *w, size_t i, size_t j, double above,
-                             struct wall_points *x)
+/* Four points of contact i from point j on; above: distance of the grain's centre from the platen.
+ */
+VGCM_INLINE void vgcm_platen_read(const struct vgcm_platen_loop *w, size_t i, size_t j,
+                                  double above, struct vgcm_platen_points *x)
 {
     const struct vgcm_points *p = w->p;
     const double *place[BRC_LANES], *slip[BRC_LANES];
@@ -116,19 +117,20 @@ VGCM_INLINE void read_points(const struct wall *w, size_t i, size_t j, double ab
     if (w->f->phase[i] == VGCM_SPHERE) {
         x->r[0] = brc_lanes_all(above);
         x->r[1] = x->r[2] = brc_lanes_all(0);
-        x->q.un = brc_lanes_all(above - w->f->rest[i]);
+        x->q.un = brc_lanes_all(above - w->f->contact_distance[i]);
     }
     x->q.s = own[0];
     x->q.t = own[1];
-    relative_motion(w, x);
+    vgcm_platen_motion(w, x);
 }
 
 /* Gripped points: springs both ways that never break. */
-VGCM_INLINE void step_grip(const struct wall *w, struct wall_points *x, struct vgcm_energy_lanes *e)
+VGCM_INLINE void vgcm_platen_grip(const struct vgcm_platen_loop *w, struct vgcm_platen_points *x,
+                                  struct vgcm_energy_lanes *e)
 {
-    struct vgcm_rub_lanes *q = &x->q;
+    struct vgcm_friction_lanes *q = &x->q;
     brc_lanes s_old = q->s, t_old = q->t, half = 0.5 * w->bond.kn * x->area;
-    q->pull = q->un; /* eq:vgcm:17 */
+    q->normal_force = q->un; /* eq:vgcm:17 */
     e->normal += half * ((q->un - x->du[0] + q->un) * x->du[0]);
     if (w->bonding == BRC_BONDING_GRIP)
         return;
@@ -139,74 +141,76 @@ VGCM_INLINE void step_grip(const struct wall *w, struct wall_points *x, struct v
 }
 
 /* Viscous forces per area on the platen; a plain contact is never pulled by them. */
-VGCM_INLINE void wall_drag(const struct wall *w, const struct wall_points *x, brc_lanes drag[3])
+VGCM_INLINE void vgcm_platen_viscous(const struct vgcm_platen_loop *w,
+                                     const struct vgcm_platen_points *x, brc_lanes viscous[3])
 {
     brc_lanes none = brc_lanes_all(0);
     for (int k = 0; k < 3; k++)
-        drag[k] = -w->viscosity * x->du[k];
+        viscous[k] = -w->viscosity * x->du[k];
     if (w->bonding == BRC_BONDING_GRIP)
-        drag[1] = drag[2] = none;
+        viscous[1] = viscous[2] = none;
     if (w->bonding != BRC_BONDING_NONE)
         return;
     brc_mask closed = brc_lanes_less(x->q.un, none);
-    drag[0] = brc_lanes_max(drag[0], w->bond.kn * x->q.pull);
+    viscous[0] = brc_lanes_max(viscous[0], w->bond.kn * x->q.normal_force);
     for (int k = 0; k < 3; k++)
-        drag[k] = brc_lanes_where(closed, drag[k]);
+        viscous[k] = brc_lanes_where(closed, viscous[k]);
 }
 
 /* Adds forces per area to a sum of forces and moments about the grain. */
-VGCM_INLINE void add_forces(brc_lanes sum[6], const struct wall_points *x,
-                            const brc_lanes per_area[3])
+VGCM_INLINE void vgcm_platen_add(brc_lanes sum[6], const struct vgcm_platen_points *x,
+                                 const brc_lanes per_area[3])
 {
-    brc_lanes part[3], moment[3];
+    brc_lanes force[3], moment[3];
     for (int k = 0; k < 3; k++)
-        part[k] = x->area * per_area[k];
-    brc_lanes_cross(moment, x->r, part);
+        force[k] = x->area * per_area[k];
+    brc_lanes_cross(moment, x->r, force);
     for (int k = 0; k < 3; k++) {
-        sum[k] += part[k];
+        sum[k] += force[k];
         sum[3 + k] += moment[k];
     }
 }
 
-/* Four points of row i from point j on. */
-VGCM_INLINE void step_wall(struct wall *w, size_t i, size_t j, double above, int flags)
+/* Four points of contact i from point j on. */
+VGCM_INLINE void vgcm_platen_points_step(struct vgcm_platen_loop *w, size_t i, size_t j,
+                                         double above, int flags)
 {
-    struct wall_points x;
-    struct vgcm_rub_lanes *q = &x.q;
-    read_points(w, i, j, above, &x);
+    struct vgcm_platen_points x;
+    struct vgcm_friction_lanes *q = &x.q;
+    vgcm_platen_read(w, i, j, above, &x);
     if (w->bonding != BRC_BONDING_NONE)
-        step_grip(w, &x, &w->energy);
+        vgcm_platen_grip(w, &x, &w->energy);
     else
-        vgcm_lanes_rub(&w->bond, x.area, x.du, q, &w->energy);
+        vgcm_lanes_friction(&w->bond, x.area, x.du, q, &w->energy);
     brc_lanes_put(w->p->un + j, q->un);
     for (size_t k = 0; k < BRC_LANES; k++) {
         w->p->law[j + k][VGCM_SLIP_S] = q->s[k];
         w->p->law[j + k][VGCM_SLIP_T] = q->t[k];
     }
-    brc_lanes part[3] = {-w->bond.kn * q->pull, w->bond.ks * q->s, w->bond.ks * q->t};
-    add_forces(w->force, &x, part); /* eq:vgcm:19 */
+    brc_lanes per_area[3] = {-w->bond.kn * q->normal_force, w->bond.ks * q->s, w->bond.ks * q->t};
+    vgcm_platen_add(w->force, &x, per_area); /* eq:vgcm:19 */
     if (flags & VGCM_VISCOUS) {
-        wall_drag(w, &x, part);
-        add_forces(w->drag, &x, part);
+        vgcm_platen_viscous(w, &x, per_area);
+        vgcm_platen_add(w->viscous_force, &x, per_area);
     }
     w->gap = brc_lanes_min(brc_lanes_pick(x.live, q->un, w->gap), w->gap);
 }
 
 /* Dissipation of the viscous forces, by the mean of those before and after the step. */
-static void account_drag(struct wall *w, size_t i, double force[6])
+static void vgcm_platen_account(struct vgcm_platen_loop *w, size_t i, double force[6])
 {
-    double *old = w->f->drag[i], drag[6];
+    double *old = w->f->viscous_force[i], viscous[6];
     for (int k = 0; k < 6; k++) {
-        drag[k] = brc_lanes_sum(w->drag[k]);
-        force[k] += drag[k];
+        viscous[k] = brc_lanes_sum(w->viscous_force[k]);
+        force[k] += viscous[k];
     }
     for (int k = 0; k < 3; k++)
-        w->viscous +=
-            0.5 * (old[3 + k] + drag[3 + k]) * w->turn[k] - 0.5 * (old[k] + drag[k]) * w->move[k];
-    memcpy(old, drag, sizeof drag);
+        w->viscous += 0.5 * (old[3 + k] + viscous[3 + k]) * w->turn[k] -
+                      0.5 * (old[k] + viscous[k]) * w->move[k];
+    memcpy(old, viscous, sizeof viscous);
 }
 
-static void begin_row(struct wall *w, size_t i)
+static void vgcm_platen_begin(struct vgcm_platen_loop *w, size_t i)
 {
     struct brc_contacts *c = w->c;
     const struct brc_sim *sim = w->sim;
@@ -219,18 +223,18 @@ static void begin_row(struct wall *w, size_t i)
                                      (w->f->moment[i][VGCM_A] * sim->dt)
                                : 0;
     for (int k = 0; k < 6; k++)
-        w->force[k] = w->drag[k] = brc_lanes_all(0);
-    set_frames(w, i);
+        w->force[k] = w->viscous_force[k] = brc_lanes_all(0);
+    vgcm_platen_frames(w, i);
 }
 
 /* Force on the platen and moments about both centres, in space. */
-static void finish_row(const struct wall *w, size_t i, const double force[6])
+static void vgcm_platen_finish(const struct vgcm_platen_loop *w, size_t i, const double force[6])
 {
     const struct brc_bodies *b = &w->sim->bodies;
     struct brc_contacts *c = w->c;
     double moment[3], arm[3];
-    to_space(w, c->f[i], force);
-    to_space(w, moment, force + 3);
+    vgcm_platen_to_space(w, c->f[i], force);
+    vgcm_platen_to_space(w, moment, force + 3);
     brc_scale(c->ta[i], moment, -1);
     brc_sub(arm, b->x[c->a[i]], b->x[c->b[i]]);
     brc_cross(c->tb[i], arm, c->f[i]);
@@ -238,31 +242,31 @@ static void finish_row(const struct wall *w, size_t i, const double force[6])
     c->gap[i] = fmin(fmin(w->gap[0], w->gap[1]), fmin(w->gap[2], w->gap[3]));
 }
 
-static void step_row(struct wall *w, size_t i, int flags)
+static void vgcm_platen_step(struct vgcm_platen_loop *w, size_t i, int flags)
 {
     const struct brc_bodies *b = &w->sim->bodies;
     double height[3], force[6];
-    begin_row(w, i);
+    vgcm_platen_begin(w, i);
     brc_sub(height, b->x[w->c->a[i]], b->x[w->c->b[i]]);
     double above = brc_dot(height, w->platen->n);
     for (size_t j = (size_t)w->c->p0[i], end = j + (size_t)w->c->np[i]; j < end; j += BRC_LANES)
-        step_wall(w, i, j, above, flags);
+        vgcm_platen_points_step(w, i, j, above, flags);
     for (int k = 0; k < 6; k++)
         force[k] = brc_lanes_sum(w->force[k]);
     if (flags & VGCM_VISCOUS)
-        account_drag(w, i, force);
-    finish_row(w, i, force);
+        vgcm_platen_account(w, i, force);
+    vgcm_platen_finish(w, i, force);
 }
 
-static void platens_loop(struct brc_sim *sim, const struct vgcm_law *law, int flags)
+static void vgcm_platens_loop(struct brc_sim *sim, const struct vgcm_law *law, int flags)
 {
-    struct wall w = {.sim = sim,
-                     .c = &sim->platens,
-                     .f = vgcm_columns(&sim->platens),
-                     .p = vgcm_point_columns(&sim->platens),
-                     .law = *law};
+    struct vgcm_platen_loop w = {.sim = sim,
+                                 .c = &sim->platens,
+                                 .f = vgcm_columns(&sim->platens),
+                                 .p = vgcm_point_columns(&sim->platens),
+                                 .law = *law};
     for (size_t i = 0; i < w.c->n; i++)
-        step_row(&w, i, flags);
+        vgcm_platen_step(&w, i, flags);
     if (flags & VGCM_LEDGER) {
         sim->ledger.contact_normal += brc_lanes_sum(w.energy.normal);
         sim->ledger.contact_shear += brc_lanes_sum(w.energy.shear);

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loops of the integrator over bodies, four at a time, compiled for each instruction set by the
  * files that include this one. */
-#ifndef BRC_INTEGRATE_LOOPS_H
-#define BRC_INTEGRATE_LOOPS_H
+#ifndef BRC_INTEGRATE_KERNELS_H
+#define BRC_INTEGRATE_KERNELS_H
 
 #include "common/engine/integrate.h"
 #include "common/base/lanes.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
 
-BRC_LANES_INLINE brc_lanes norm_of(const brc_lanes v[3])
+BRC_LANES_INLINE brc_lanes brc_norm_of_lanes(const brc_lanes v[3])
 {
     return brc_lanes_sqrt(brc_lanes_dot(v, v));
 }
 
-static void drift(struct brc_sim *sim)
+static void brc_drift_loop(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
     double dt = sim->dt;
@@ -26,14 +26,15 @@ static void drift(struct brc_sim *sim)
         for (int k = 0; k < 3; k++)
             x[k] += dt * v[k];
         brc_lanes_put3(b->x + i, x);
-        brc_lanes path = dt * (norm_of(v) + brc_lanes_at(b->bounding_radius + i) * norm_of(w));
+        brc_lanes path = dt * (brc_norm_of_lanes(v) +
+                               brc_lanes_at(b->bounding_radius + i) * brc_norm_of_lanes(w));
         brc_lanes_put(b->path_length + i, brc_lanes_at(b->path_length + i) + path);
     }
 }
 
 /* Local non-viscous damping of a force (or moment) f against the velocity v. */
-BRC_LANES_INLINE void local_damping(const struct brc_sim *sim, brc_lanes d[3], const brc_lanes f[3],
-                                    const brc_lanes v[3])
+BRC_LANES_INLINE void brc_local_damping(const struct brc_sim *sim, brc_lanes d[3],
+                                        const brc_lanes f[3], const brc_lanes v[3])
 {
     double alpha = sim->damping_alpha;
     if (sim->run.damping == BRC_DAMPING_CARTESIAN) {
@@ -43,26 +44,26 @@ BRC_LANES_INLINE void local_damping(const struct brc_sim *sim, brc_lanes d[3], c
         }
         return;
     }
-    brc_lanes speed = norm_of(v), part = -alpha * norm_of(f) / speed;
+    brc_lanes speed = brc_norm_of_lanes(v), part = -alpha * brc_norm_of_lanes(f) / speed;
     part = brc_lanes_where(brc_lanes_less(brc_lanes_all(0), speed), part);
     for (int k = 0; k < 3; k++)
         d[k] = part * v[k];
 }
 
-struct kick_sums {
+struct brc_kick_sums {
     brc_lanes kinetic;       /* sum of m v- . v+ / 2 */
     brc_lanes damping;       /* work of the damping force over the half step before the kick */
     brc_lanes damping_ahead; /* and over the half step after it */
 };
 
 /* Four bodies' force or moment, its damping, and v or w before and after. */
-struct push {
+struct brc_kick {
     brc_lanes f[3], d[3], old[3], now[3];
 };
 
 /* Without a ledger nothing is summed but kinetic energy. */
-BRC_LANES_INLINE void add_damping(const struct brc_sim *sim, brc_mask live, double dt,
-                                  const struct push *p, struct kick_sums *sums)
+BRC_LANES_INLINE void brc_kick_account(const struct brc_sim *sim, brc_mask live, double dt,
+                                       const struct brc_kick *p, struct brc_kick_sums *sums)
 {
     if (!BRC_OPTION(sim->run.ledger))
         return;
@@ -71,8 +72,8 @@ BRC_LANES_INLINE void add_damping(const struct brc_sim *sim, brc_mask live, doub
 }
 
 /* What local damping acts against: the motion, or what it differs from its mean by. */
-BRC_LANES_INLINE void damped_motion(const struct brc_sim *sim, brc_lanes v[3],
-                                    const brc_lanes old[3], double (*mean)[3])
+BRC_LANES_INLINE void brc_damped_motion(const struct brc_sim *sim, brc_lanes v[3],
+                                        const brc_lanes old[3], double (*mean)[3])
 {
     brc_lanes spared[3];
     brc_lanes_at3(spared, mean);
@@ -82,8 +83,8 @@ BRC_LANES_INLINE void damped_motion(const struct brc_sim *sim, brc_lanes v[3],
 }
 
 /* What pushes bodies i to i + 3: v or w before, force or moment, damping. */
-BRC_LANES_INLINE void push_of(const struct brc_sim *sim, double (*v)[3], double (*f)[3],
-                              double (*mean)[3], struct push *p)
+BRC_LANES_INLINE void brc_kick_begin(const struct brc_sim *sim, double (*v)[3], double (*f)[3],
+                                     double (*mean)[3], struct brc_kick *p)
 {
     brc_lanes damped[3];
     brc_lanes_at3(p->old, v);
@@ -91,14 +92,14 @@ BRC_LANES_INLINE void push_of(const struct brc_sim *sim, double (*v)[3], double 
     for (int k = 0; k < 3; k++)
         p->d[k] = brc_lanes_all(0);
     if (BRC_OPTION(sim->damping_alpha > 0)) {
-        damped_motion(sim, damped, p->old, mean);
-        local_damping(sim, p->d, p->f, damped); /* eq:vgcm:4 */
+        brc_damped_motion(sim, damped, p->old, mean);
+        brc_local_damping(sim, p->d, p->f, damped); /* eq:vgcm:4 */
     }
 }
 
 /* Exponential mean over the memory of the damping. */
-BRC_LANES_INLINE void follow_mean(const struct brc_sim *sim, brc_mask live, double (*mean)[3],
-                                  const struct push *p)
+BRC_LANES_INLINE void brc_mean_follow(const struct brc_sim *sim, brc_mask live, double (*mean)[3],
+                                      const struct brc_kick *p)
 {
     brc_lanes at[3];
     if (!BRC_OPTION(sim->tracks_mean))
@@ -109,7 +110,7 @@ BRC_LANES_INLINE void follow_mean(const struct brc_sim *sim, brc_mask live, doub
     brc_lanes_put3(mean, at);
 }
 
-BRC_LANES_INLINE void put_where(brc_mask live, double (*v)[3], const struct push *p)
+BRC_LANES_INLINE void brc_kick_put(brc_mask live, double (*v)[3], const struct brc_kick *p)
 {
     brc_lanes put[3];
     for (int k = 0; k < 3; k++)
@@ -118,24 +119,25 @@ BRC_LANES_INLINE void put_where(brc_mask live, double (*v)[3], const struct push
 }
 
 /* v += dt (f + damping) / m, with the sums for the ledger. */
-BRC_LANES_INLINE void kick_translation(const struct brc_sim *sim, size_t i, brc_mask live,
-                                       double dt, struct kick_sums *sums)
+BRC_LANES_INLINE void brc_kick_translation(const struct brc_sim *sim, size_t i, brc_mask live,
+                                           double dt, struct brc_kick_sums *sums)
 {
     const struct brc_bodies *b = &sim->bodies;
-    struct push p;
+    struct brc_kick p;
     brc_lanes mass = brc_lanes_at(b->mass + i);
-    push_of(sim, b->v + i, b->f + i, b->v_mean + i, &p);
+    brc_kick_begin(sim, b->v + i, b->f + i, b->v_mean + i, &p);
     for (int k = 0; k < 3; k++)
         p.now[k] = p.old[k] + dt * (p.f[k] + p.d[k]) / mass; /* eq:vgcm:1 */
-    put_where(live, b->v + i, &p);
-    follow_mean(sim, live, b->v_mean + i, &p);
+    brc_kick_put(live, b->v + i, &p);
+    brc_mean_follow(sim, live, b->v_mean + i, &p);
     sums->kinetic += brc_lanes_where(live, 0.5 * mass * brc_lanes_dot(p.old, p.now));
-    add_damping(sim, live, dt, &p, sums);
+    brc_kick_account(sim, live, dt, &p, sums);
 }
 
 /* Grains with unequal moments of inertia, one after the other. */
-static __attribute__((noinline)) void spin_up(const struct brc_bodies *b, size_t i, brc_mask live,
-                                              double dt, struct push *p, struct kick_sums *sums)
+static __attribute__((noinline)) void brc_kick_spin(const struct brc_bodies *b, size_t i,
+                                                    brc_mask live, double dt, struct brc_kick *p,
+                                                    struct brc_kick_sums *sums)
 {
     for (int k = 0; k < BRC_LANES; k++) {
         size_t n = i + (size_t)k;
@@ -152,37 +154,37 @@ static __attribute__((noinline)) void spin_up(const struct brc_bodies *b, size_t
 }
 
 /* w and l from the moments; for equal moments of inertia l is left alone. */
-BRC_LANES_INLINE void kick_rotation(const struct brc_sim *sim, size_t i, brc_mask live, double dt,
-                                    struct kick_sums *sums)
+BRC_LANES_INLINE void brc_kick_rotation(const struct brc_sim *sim, size_t i, brc_mask live,
+                                        double dt, struct brc_kick_sums *sums)
 {
     const struct brc_bodies *b = &sim->bodies;
-    struct push p;
+    struct brc_kick p;
     brc_lanes inertia[3];
     brc_lanes_at3(inertia, b->inertia + i);
-    push_of(sim, b->w + i, b->t + i, b->w_mean + i, &p);
+    brc_kick_begin(sim, b->w + i, b->t + i, b->w_mean + i, &p);
     brc_mask unequal =
         live & (brc_lanes_less(inertia[0], inertia[1]) | brc_lanes_less(inertia[1], inertia[0]) |
                 brc_lanes_less(inertia[1], inertia[2]) | brc_lanes_less(inertia[2], inertia[1]));
     brc_mask equal = live & ~unequal;
     for (int k = 0; k < 3; k++)
         p.now[k] = p.old[k] + dt / inertia[0] * (p.f[k] + p.d[k]); /* eq:vgcm:2 */
-    put_where(equal, b->w + i, &p);
+    brc_kick_put(equal, b->w + i, &p);
     sums->kinetic += brc_lanes_where(equal, 0.5 * inertia[0] * brc_lanes_dot(p.old, p.now));
     if (brc_lanes_any(unequal))
-        spin_up(b, i, unequal, dt, &p, sums);
-    follow_mean(sim, live, b->w_mean + i, &p);
-    add_damping(sim, live, dt, &p, sums);
+        brc_kick_spin(b, i, unequal, dt, &p, sums);
+    brc_mean_follow(sim, live, b->w_mean + i, &p);
+    brc_kick_account(sim, live, dt, &p, sums);
 }
 
-static void kick(struct brc_sim *sim, double dt)
+static void brc_kick_loop(struct brc_sim *sim, double dt)
 {
-    struct kick_sums sums = {.kinetic = brc_lanes_all(0)};
+    struct brc_kick_sums sums = {.kinetic = brc_lanes_all(0)};
     bool rotates = sim->model.flags & BRC_MODEL_ROTATES;
     for (size_t i = 0; i < sim->bodies.n_grains; i += BRC_LANES) {
         brc_mask live = brc_lanes_first((int64_t)(sim->bodies.n_grains - i));
-        kick_translation(sim, i, live, dt, &sums);
+        brc_kick_translation(sim, i, live, dt, &sums);
         if (rotates)
-            kick_rotation(sim, i, live, dt, &sums);
+            brc_kick_rotation(sim, i, live, dt, &sums);
     }
     sim->ledger.kinetic = brc_lanes_sum(sums.kinetic);
     sim->ledger.local_damping += brc_lanes_sum(sums.damping);
