@@ -46,7 +46,11 @@ VGCM_INLINE void vgcm_fetch(const void *at, size_t size)
 }
 
 /* Asks for what four more contacts of the next chunk will want: machines do not foresee the order
- * of the queues. What tells where points are is wanted a chunk earlier. */
+ * of the queues. What tells where points are is wanted a chunk earlier. Without it a step takes
+ * 27 % longer a point at half of the points damaged, 15 % over the whole of bench_vgcm (minima of
+ * six runs, 20.0 against 15.8 ns and 14.5 against 12.7 ns). Two more tricks of this kind gave
+ * nothing and are gone: to keep the points of damaged contacts together in memory, and to build
+ * the loops for AVX-512 too. */
 VGCM_INLINE void vgcm_fetch_ahead(struct vgcm_loop *l)
 {
     const struct brc_contacts *c = l->c;

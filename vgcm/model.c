@@ -139,11 +139,6 @@ static int check(struct brc_context *ctx, const void *values, const struct brc_s
                         census.largest_distance);
 }
 
-static bool is_busy(const struct brc_contacts *c, size_t contact)
-{
-    return vgcm_columns(c)->phase[contact] == VGCM_POINTS;
-}
-
 static int create(struct brc_sim *sim, void **state)
 {
     struct vgcm_state *own = brc_alloc(sim->ctx, 1, sizeof *own);
@@ -151,7 +146,6 @@ static int create(struct brc_sim *sim, void **state)
         return BRC_ERR_MEMORY;
     vgcm_scale_params(sim->params, &sim->specimen->facets);
     vgcm_law_of(&own->law, sim->params);
-    sim->pairs.is_busy = is_busy;
     sim->platens.lanes =
         BRC_LANES; /* platens_kernels.inc.h takes so many points of a contact at a time */
     *state = own;
@@ -213,16 +207,7 @@ static void select_loops(struct brc_sim *sim, void *state)
     own->flags =
         vgcm_law_flags(&own->law) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
         (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
-    switch (brc_simd_of(sim->run.simd)) {
-    case BRC_SIMD_AVX512:
-        own->loops = &vgcm_loops_avx512;
-        break;
-    case BRC_SIMD_AVX2:
-        own->loops = &vgcm_loops_avx2;
-        break;
-    default:
-        own->loops = &vgcm_loops_base;
-    }
+    own->loops = brc_simd_of(sim->run.simd) == BRC_SIMD_BASE ? &vgcm_loops_base : &vgcm_loops_avx2;
 }
 
 static void forces(struct brc_sim *sim, void *state)

@@ -176,7 +176,7 @@ struct vgcm_loops {
     void (*forces[VGCM_N_LOOPS])(struct brc_sim *sim, const struct vgcm_law *law);
     void (*platens)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
 };
-extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2, vgcm_loops_avx512;
+extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2;
 
 /* energy.c */
 void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3]);

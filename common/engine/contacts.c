@@ -154,39 +154,22 @@ int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b)
     return -1;
 }
 
-static bool is_busy(const struct brc_contacts *c, size_t row)
+/* Moves the ranges of points to follow each other, each padded to a multiple of lanes. */
+static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lanes)
 {
-    return c->is_busy && c->is_busy(c, row);
-}
-
-/* Lists where the points of row i come from, from place k on, and moves its range there. */
-static size_t place(struct brc_contacts *c, size_t i, int32_t lanes, size_t *from, size_t k)
-{
-    int32_t start = (int32_t)k, reserved = padded(c->np[i], lanes);
-    for (int32_t j = 0; j < reserved; j++)
-        from[k++] = j < c->np[i] ? (size_t)c->p0[i] + (size_t)j : BRC_NEW_ROW;
-    c->p0[i] = start;
-    c->pcap[i] = reserved;
-    return k;
-}
-
-/* Moves the ranges of points to follow each other, each padded to a multiple of lanes; busy ones
- * first where is_apart. */
-static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lanes, bool is_apart)
-{
-    size_t total = 0;
+    size_t total = 0, k = 0;
     for (size_t i = 0; i < c->n; i++)
         total += (size_t)padded(c->np[i], lanes);
     size_t *from = brc_alloc(ctx, total, sizeof *from);
     if (!from)
         return BRC_ERR_MEMORY;
-    size_t k = 0;
-    for (size_t i = 0; is_apart && i < c->n; i++)
-        if (is_busy(c, i))
-            k = place(c, i, lanes, from, k);
-    for (size_t i = 0; i < c->n; i++)
-        if (!is_apart || !is_busy(c, i))
-            k = place(c, i, lanes, from, k);
+    for (size_t i = 0; i < c->n; i++) {
+        int32_t start = (int32_t)k, reserved = padded(c->np[i], lanes);
+        for (int32_t j = 0; j < reserved; j++)
+            from[k++] = j < c->np[i] ? (size_t)(c->p0[i] + j) : BRC_NEW_ROW;
+        c->p0[i] = start;
+        c->pcap[i] = reserved;
+    }
     int code = brc_table_gather(ctx, &c->points, from, total);
     free(from);
     return code;
@@ -194,12 +177,12 @@ static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lane
 
 int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
 {
-    return arrange(ctx, c, c->lanes, true);
+    return arrange(ctx, c, c->lanes);
 }
 
 int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c)
 {
-    return arrange(ctx, c, 1, false);
+    return arrange(ctx, c, 1);
 }
 
 int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
@@ -220,16 +203,10 @@ int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
 
 int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c)
 {
-    size_t used = 0, busy = 0, astray = 0;
-    for (size_t i = 0; i < c->n; i++) {
+    size_t used = 0;
+    for (size_t i = 0; i < c->n; i++)
         used += (size_t)padded(c->np[i], c->lanes);
-        if (is_busy(c, i))
-            busy += (size_t)padded(c->np[i], c->lanes);
-    }
-    for (size_t i = 0; busy > 0 && i < c->n; i++)
-        astray += is_busy(c, i) && (size_t)c->p0[i] >= busy;
-    bool is_stale = 4 * c->points.n > 5 * used + 64 || 16 * astray > c->n;
-    return is_stale ? brc_contacts_compact(ctx, c) : 0;
+    return 4 * c->points.n > 5 * used + 64 ? brc_contacts_compact(ctx, c) : 0;
 }
 
 uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed)

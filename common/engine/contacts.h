@@ -35,8 +35,6 @@ struct brc_contacts {
     BRC_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
     size_t n;
     int32_t lanes; /* ranges of points begin at multiples of it, and are padded to one */
-    /* set by models: whether a row's points are in use at each step; such ranges lie together */
-    bool (*is_busy)(const struct brc_contacts *c, size_t row);
     struct brc_table table;
     struct brc_table model; /* the model's contact fields, same rows */
     void *model_columns;
@@ -69,8 +67,7 @@ int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b);
 int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c);
 /* The same without padding: p0 is the running sum of np, as files have it. */
 int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c);
-/* Compacts when a fifth of the points' memory has been left behind by ranges that moved, or where
- * one row in sixteen has become busy and does not lie with the others. */
+/* Compacts when a fifth of the points' memory has been left behind by ranges that moved. */
 int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c);
 /* After the tables have been replaced by saved, packed ones: n, p0 and the rows of each body. */
 int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c);

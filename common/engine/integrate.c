@@ -80,11 +80,7 @@ static void drift_orientations(struct brc_sim *sim)
 
 static const struct brc_integrate_loops *loops_of(const struct brc_sim *sim)
 {
-    static const struct brc_integrate_loops *const loops[BRC_N_SIMD] = {
-        [BRC_SIMD_BASE] = &brc_integrate_base,
-        [BRC_SIMD_AVX2] = &brc_integrate_avx2,
-        [BRC_SIMD_AVX512] = &brc_integrate_avx512};
-    return loops[brc_simd_of(sim->run.simd)];
+    return brc_simd_of(sim->run.simd) == BRC_SIMD_BASE ? &brc_integrate_base : &brc_integrate_avx2;
 }
 
 void brc_integrate_drift(struct brc_sim *sim)

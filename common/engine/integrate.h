@@ -35,7 +35,6 @@ struct brc_integrate_loops {
     void (*drift)(struct brc_sim *sim); /* without orientations */
     void (*kick)(struct brc_sim *sim, double dt);
 };
-extern const struct brc_integrate_loops brc_integrate_base, brc_integrate_avx2,
-    brc_integrate_avx512;
+extern const struct brc_integrate_loops brc_integrate_base, brc_integrate_avx2;
 
 #endif

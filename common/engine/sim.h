@@ -47,8 +47,10 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
     REAL3(gravity, "m/s2", "0 m/s2, 0 m/s2, 0 m/s2", NULL, "acceleration of gravity")             \
     FLAG(ledger, "on", "energy ledger; off costs nothing and reports no residual")                \
     REAL(skin, "1", "0.2", "[0.01, 0.5]", "candidates: skin, in mean grain radii")                \
-    CHOICE(simd, "auto|base|avx2|avx512", "auto",                                                 \
-           "instructions that hot loops use; the same bits with each of them")                    \
+    CHOICE(                                                                                       \
+        simd, "auto|base|avx2|avx512", "auto",                                                    \
+        "instructions that hot loops use; the same bits with each of them; where a loop has no "  \
+        "AVX-512 build, avx512 runs its AVX2 one")                                                \
     INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")           \
     REAL(checkpoint, "s", "5 min", "[0, inf)",                                                    \
          "elapsed time between saved states; 0: none by time")                                    \

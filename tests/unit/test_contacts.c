@@ -206,34 +206,6 @@ static void hash_ignores_where_points_lie(void **state)
     assert_true(brc_contacts_hash(&t->c, BRC_HASH_SEED) != hash);
 }
 
-static bool is_third(const struct brc_contacts *c, size_t row)
-{
-    (void)c;
-    return row % 3 == 0;
-}
-
-static void busy_ranges_lie_together(void **state)
-{
-    struct trial *t = *state;
-    set_random(t);
-    name_rows(t);
-    CHECK_OK(&t->ctx, brc_contacts_compact(&t->ctx, &t->c));
-    uint64_t hash = brc_contacts_hash(&t->c, BRC_HASH_SEED);
-    t->c.is_busy = is_third;
-    CHECK_OK(&t->ctx, brc_contacts_tidy(&t->ctx, &t->c)); /* a third is more than one in sixteen */
-    assert_true(brc_contacts_hash(&t->c, BRC_HASH_SEED) == hash);
-    int32_t sum = 0;
-    for (size_t i = 0; i < t->c.n; i += 3) {
-        assert_int_equal(t->c.p0[i], sum);
-        sum += t->c.np[i];
-    }
-    for (size_t i = 0; i < t->c.n; i++)
-        assert_true(i % 3 == 0 || t->c.p0[i] >= sum);
-    CHECK_OK(&t->ctx, brc_contacts_pack(&t->ctx, &t->c)); /* files have the order of the rows */
-    assert_int_equal(t->c.p0[1], t->c.np[0]);
-    t->c.is_busy = NULL;
-}
-
 static void empty_set_is_valid(void **state)
 {
     struct trial *t = *state;
@@ -257,7 +229,6 @@ int main(void)
         TEST(adjacency_lists_every_row_of_a_body),
         TEST(points_grow_and_shrink_in_place),
         TEST(hash_ignores_where_points_lie),
-        TEST(busy_ranges_lie_together),
         TEST(empty_set_is_valid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
