@@ -22,7 +22,7 @@
 
 struct brc_context;  /* errors, log, ranks: error.h */
 struct brc_params;   /* list of parameters: params.h */
-struct brc_table;    /* arrays declared by a field list: fields.h */
+struct brc_table;    /* arrays declared by a field list: table.h */
 struct brc_facets;   /* tessellation result: facets.h */
 struct brc_specimen; /* grains' geometry before any model: specimen.h */
 struct brc_contacts; /* contact arrays: contacts.h */

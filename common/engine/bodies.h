@@ -3,7 +3,7 @@
 #ifndef BRC_BODIES_H
 #define BRC_BODIES_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 
 /* v and w are half-step values while forces are computed: the displacement of a point in the step
  * that has just been made is (v + w x r) dt, with the positions at its end. */

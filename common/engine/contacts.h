@@ -6,7 +6,7 @@
 #ifndef BRC_CONTACTS_H
 #define BRC_CONTACTS_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 
 enum brc_status {
     BRC_OPEN,   /* never bonded: touches, or is watched */

@@ -3,7 +3,7 @@
 #ifndef BRC_EVENTS_H
 #define BRC_EVENTS_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 
 enum brc_mode { BRC_MODE_TENSION, BRC_MODE_SHEAR, BRC_MODE_TORSION, BRC_N_MODES };
 

@@ -5,7 +5,7 @@
 #ifndef BRC_MODEL_H
 #define BRC_MODEL_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "common/input/params.h"
 #include "common/engine/stability.h"
 #include "common/geometry/grid.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/checksum_header.h"
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "common/input/input_file.h"
 
 #include <errno.h>

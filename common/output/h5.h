@@ -4,7 +4,7 @@
 #ifndef BRC_H5_H
 #define BRC_H5_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "common/output/checksum_header.h"
 
 /* A file being written or read; the path is for messages and must live as long. */

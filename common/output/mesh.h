@@ -3,7 +3,7 @@
 #ifndef BRC_MESH_H
 #define BRC_MESH_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 
 enum brc_mesh_kind { BRC_MESH_LINES = 3, BRC_MESH_POLYGONS = 7 }; /* VTK's cell types */
 

@@ -3,7 +3,7 @@
 #ifndef BRC_OUTPUT_H
 #define BRC_OUTPUT_H
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "common/engine/ledger.h"
 #include "common/input/params.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/specimen/facets.h"
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "common/base/grow.h"
 #include "common/geometry/vec.h"
 

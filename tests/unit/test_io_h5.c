@@ -110,7 +110,7 @@ static void test_equal_states_give_equal_files(void **state)
 }
 
 /* What another program finds: unit, meaning and shape of a field; the kind of number. */
-static void test_fields_describe_themselves(void **state)
+static void test_table_describe_themselves(void **state)
 {
     struct fixture *f = *state;
     char path[64];
@@ -273,7 +273,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(test_round_trip),
-        FIXTURE_TEST(test_fields_describe_themselves),
+        FIXTURE_TEST(test_table_describe_themselves),
         FIXTURE_TEST(test_equal_states_give_equal_files),
         FIXTURE_TEST(test_foreign_files),
         FIXTURE_TEST(test_damage),

@@ -2,7 +2,7 @@
 /* Specimens: shapes, grid, packing and its statistics, the cache on disk, bad input. */
 #include "tests/near.h"
 
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "common/specimen/specimen.h"
 #include "common/geometry/vec.h"
 

@@ -15,8 +15,8 @@
  *     };
  *     #undef BRC_OWNER
  */
-#ifndef BRC_FIELDS_H
-#define BRC_FIELDS_H
+#ifndef BRC_TABLE_H
+#define BRC_TABLE_H
 
 #include "common/base/error.h"
 

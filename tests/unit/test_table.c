@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/base/fields.h"
+#include "common/base/table.h"
 #include "tests/near.h"
 
 #define THING_FIELDS(SCALAR, VECTOR)                        \

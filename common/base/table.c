@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _DEFAULT_SOURCE /* for madvise; NOLINT(bugprone-reserved-identifier) */
-#include "common/base/fields.h"
+#include "common/base/table.h"
 
 #include <stdlib.h>
 #include <string.h>
