@@ -22,12 +22,11 @@ static int check_variable(struct brc_context *ctx, const struct calib_objective 
     const struct calib_variable *v = &o->variables[i];
     const struct brc_param *p = brc_params_find(list, v->key);
     if (!p || p->kind != BRC_REAL) {
-        const char *nearest = brc_params_nearest(list, v->key);
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "calibration: %s.%s is no quantity of the model%s%s%s; `breccia params %s` lists "
-                 "them",
-                 o->model, v->key, nearest ? "; did you mean '" : "", nearest ? nearest : "",
-                 nearest ? "'?" : "", o->model);
+        char hint[BRC_HINT_SIZE];
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "calibration: %s.%s is not a quantity of the model%s; `breccia params %s` lists them",
+            o->model, v->key, brc_params_hint(list, v->key, hint), o->model);
     }
     if (!(v->low < v->high) || !isfinite(v->low) || !isfinite(v->high))
         BRC_FAIL(ctx, BRC_ERR_INPUT,

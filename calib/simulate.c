@@ -66,12 +66,12 @@ static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
         s->has_specimen[test] = true;
     }
     brc_progress_begin(&quiet, stderr, &trial->model, 1, true);
-    struct brc_run_order order = {.run_case = run_case,
-                                  .model = model,
-                                  .specimen = &s->specimen[test],
-                                  .dir = dir,
-                                  .is_forced = s->has_run[test],
-                                  .progress = &quiet};
+    struct brc_run_options order = {.run_case = run_case,
+                                    .model = model,
+                                    .specimen = &s->specimen[test],
+                                    .dir = dir,
+                                    .is_forced = s->has_run[test],
+                                    .progress = &quiet};
     int code = brc_run(ctx, &order, out);
     s->has_run[test] |= brc_run_has_begun(dir) && code != BRC_ERR_INPUT;
     brc_progress_end(&quiet);

@@ -3,18 +3,19 @@
 #include "common/parallel/comm.h"
 #include "common/runs/compare.h"
 #include "common/base/console.h"
+#include "common/base/folders.h"
+#include "common/base/signals.h"
 #include "common/runs/converge.h"
 #include "common/runs/export.h"
 #include "common/output/info.h"
 #include "common/runs/run.h"
 
-#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 4096, MAX_OVERRIDES = 256 };
+enum { MAX_OVERRIDES = 256 };
 
 struct options {
     const char *operand; /* CASE, or the section of `params`, or a file */
@@ -153,23 +154,13 @@ static void print_command_help(FILE *out, const struct command *c)
 
 /* ---- reading the command line -------------------------------------------------------------- */
 
-/* " ; did you mean 'X'?" for the nearest of the names, or "". */
-static const char *suggest(const char *text, const char *const *names, int n, char buffer[128])
+static const char *suggest(const char *text, const char *const *names, int n,
+                           char hint[BRC_HINT_SIZE])
 {
-    const char *nearest = NULL;
-    int least = INT_MAX;
-    for (int i = 0; i < n; i++) {
-        int distance = brc_params_distance(text, names[i]);
-        if (distance < least) {
-            least = distance;
-            nearest = names[i];
-        }
-    }
-    buffer[0] = '\0';
-    bool is_near = least <= 2 || brc_params_is_near(text, least);
-    if (nearest && is_near && strlen(text) > 1)
-        snprintf(buffer, 128, "; did you mean '%.60s'?", nearest);
-    return buffer;
+    struct brc_nearest nearest = {.text = text};
+    for (int i = 0; i < n; i++)
+        brc_nearest_add(&nearest, names[i]);
+    return brc_nearest_hint(&nearest, hint);
 }
 
 static const struct option *find_option(const struct command *c, const char *name, size_t length)
@@ -184,14 +175,15 @@ static const struct option *find_option(const struct command *c, const char *nam
 static int fail_option(struct brc_context *ctx, const struct command *c, const char *text)
 {
     const char *names[N_OPTIONS];
-    char name[64], hint[128] = "";
+    char name[64], hint[BRC_HINT_SIZE];
     int n = 0;
     for (int i = 0; i < N_OPTIONS; i++)
         if (strchr(options[i].commands, c->letter))
             names[n++] = options[i].name;
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-    BRC_FAIL(ctx, BRC_ERR_USAGE, "%s has no option '%s'%s%s", c->name, name,
-             suggest(name, names, n, hint), *hint ? "" : "; see breccia COMMAND --help");
+    suggest(name, names, n, hint);
+    BRC_FAIL(ctx, BRC_ERR_USAGE, "%s has no option '%s'%s%s", c->name, name, hint,
+             *hint ? "" : "; see breccia COMMAND --help");
 }
 
 static int take_count(struct brc_context *ctx, const char *name, const char *value, int largest,
@@ -338,16 +330,16 @@ static void print_summary(const struct brc_summary *s, const char *dir)
 static int run_model(struct brc_context *ctx, const struct options *o,
                      const struct brc_case *run_case)
 {
-    char dir[PATH_SIZE];
+    char dir[BRC_PATH_SIZE];
     struct brc_specimen specimen = {0};
     struct brc_progress progress;
     struct brc_summary summary;
-    struct brc_run_order order = {.run_case = run_case,
-                                  .specimen = &specimen,
-                                  .dir = dir,
-                                  .is_resumed = o->is_resumed,
-                                  .is_forced = o->is_forced,
-                                  .progress = &progress};
+    struct brc_run_options order = {.run_case = run_case,
+                                    .specimen = &specimen,
+                                    .dir = dir,
+                                    .is_resumed = o->is_resumed,
+                                    .is_forced = o->is_forced,
+                                    .progress = &progress};
     const char *name = o->model ? o->model : run_case->file.head.model;
     if (!*name)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
@@ -358,10 +350,10 @@ static int run_model(struct brc_context *ctx, const struct options *o,
     else
         snprintf(dir, sizeof dir, "results/%s/%s", run_case->name, name);
     BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
-    brc_run_leave_on_signals();
+    brc_signals_leave();
     int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0) {
-        brc_run_hold_signals();
+        brc_signals_hold();
         code = start_single(ctx);
     }
     if (code == 0) {
@@ -391,22 +383,22 @@ static int act_run(struct brc_context *ctx, const struct options *o)
 static int compare_case(struct brc_context *ctx, const struct options *o,
                         const struct brc_case *run_case)
 {
-    char dir[PATH_SIZE];
+    char dir[BRC_PATH_SIZE];
     struct brc_specimen specimen = {0};
-    const struct brc_compare_order order = {.run_case = run_case,
-                                            .specimen = &specimen,
-                                            .dir = dir,
-                                            .is_resumed = o->is_resumed,
-                                            .is_forced = o->is_forced,
-                                            .is_quiet = o->is_quiet};
+    const struct brc_compare_options order = {.run_case = run_case,
+                                              .specimen = &specimen,
+                                              .dir = dir,
+                                              .is_resumed = o->is_resumed,
+                                              .is_forced = o->is_forced,
+                                              .is_quiet = o->is_quiet};
     if (o->dir)
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
         snprintf(dir, sizeof dir, "results/%s", run_case->name);
-    brc_run_leave_on_signals();
+    brc_signals_leave();
     int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0) {
-        brc_run_hold_signals();
+        brc_signals_hold();
         code = brc_compare(ctx, &order);
     }
     if (code == 0)
@@ -430,18 +422,18 @@ static int act_compare(struct brc_context *ctx, const struct options *o)
 static int converge_case(struct brc_context *ctx, const struct options *o,
                          const struct brc_case *run_case)
 {
-    char dir[PATH_SIZE];
-    const struct brc_converge_order order = {.run_case = run_case,
-                                             .model = o->model,
-                                             .dir = dir,
-                                             .observable =
-                                                 o->observable ? o->observable : "strength",
-                                             .axes = o->axes ? o->axes : "",
-                                             .seeds = o->seeds ? o->seeds : 4,
-                                             .refine = o->refine ? o->refine : 8,
-                                             .jobs = o->jobs ? o->jobs : 1,
-                                             .is_resumed = o->is_resumed,
-                                             .is_forced = o->is_forced};
+    char dir[BRC_PATH_SIZE];
+    const struct brc_converge_options order = {.run_case = run_case,
+                                               .model = o->model,
+                                               .dir = dir,
+                                               .observable =
+                                                   o->observable ? o->observable : "strength",
+                                               .axes = o->axes ? o->axes : "",
+                                               .seeds = o->seeds ? o->seeds : 4,
+                                               .refine = o->refine ? o->refine : 8,
+                                               .jobs = o->jobs ? o->jobs : 1,
+                                               .is_resumed = o->is_resumed,
+                                               .is_forced = o->is_forced};
     if (order.refine < 2 || (order.refine & (order.refine - 1)) != 0)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
                  BRC_CONVERGE_MAX_REFINE, order.refine);
@@ -449,7 +441,7 @@ static int converge_case(struct brc_context *ctx, const struct options *o,
         snprintf(dir, sizeof dir, "%s", o->dir);
     else
         snprintf(dir, sizeof dir, "results/%s", run_case->name);
-    brc_run_hold_signals();
+    brc_signals_hold();
     int code = brc_converge(ctx, &order);
     if (code == 0)
         printf("results in %s\n", dir);
@@ -478,7 +470,7 @@ static int act_export(struct brc_context *ctx, const struct options *o)
     const char *what = o->format ? o->format : o->table;
     if (!what || (o->format && o->table))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
-    const struct brc_export_order order = {o->operand, o->dir, o->is_forced};
+    const struct brc_export_options order = {o->operand, o->dir, o->is_forced};
     return o->table ? brc_export_table(ctx, &order, o->table)
                     : brc_export_format(ctx, &order, o->format);
 }
@@ -487,7 +479,7 @@ static int act_params(struct brc_context *ctx, const struct options *o)
 {
     const char *names[64];
     struct brc_param_list list;
-    char hint[128] = "";
+    char hint[BRC_HINT_SIZE];
     bool is_found = false;
     int n = 0;
     for (; n < 64 && brc_case_section(n, &names[n], &list); n++) {
@@ -515,7 +507,7 @@ static int act_models(struct brc_context *ctx, const struct options *o)
 static int act(struct brc_context *ctx, char **words, struct options *o)
 {
     const char *names[N_COMMANDS + 2] = {"--help", "--version"};
-    char hint[128] = "";
+    char hint[BRC_HINT_SIZE];
     for (int i = 0; i < N_COMMANDS; i++) {
         names[i + 2] = commands[i].name;
         if (strcmp(words[0], commands[i].name) != 0)
@@ -527,8 +519,9 @@ static int act(struct brc_context *ctx, char **words, struct options *o)
             print_command_help(stdout, &commands[i]);
         return o->is_help ? 0 : commands[i].act(ctx, o);
     }
-    BRC_FAIL(ctx, BRC_ERR_USAGE, "no command '%.60s'%s%s", words[0],
-             suggest(words[0], names, N_COMMANDS + 2, hint), *hint ? "" : "; see breccia --help");
+    suggest(words[0], names, N_COMMANDS + 2, hint);
+    BRC_FAIL(ctx, BRC_ERR_USAGE, "no command '%.60s'%s%s", words[0], hint,
+             *hint ? "" : "; see breccia --help");
 }
 
 static int act_first(struct brc_context *ctx, char **words, struct options *o)

@@ -4,6 +4,7 @@
 #include "common/output/h5.h"
 #include "common/output/io_h5.h"
 #include "common/runs/case.h"
+#include "common/runs/case_text.h"
 #include "tests/fuzz_aid.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/input/casefile.h"
 
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
 
 #include <yaml.h>
 
@@ -9,12 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define BRC_OWNER struct brc_casefile_params
-static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASEFILE_PARAMS)};
-#undef BRC_OWNER
-const struct brc_param_list brc_casefile_param_list =
-    BRC_PARAMS(case_params, struct brc_casefile_params);
 
 /* A mapping that is open while the file is read. */
 struct level {

@@ -5,6 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#define BRC_OWNER struct brc_casefile_params
+static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASEFILE_PARAMS)};
+#undef BRC_OWNER
+const struct brc_param_list brc_casefile_param_list =
+    BRC_PARAMS(case_params, struct brc_casefile_params);
+
 static int check_version(struct brc_context *ctx, const struct brc_casefile *c)
 {
     const struct brc_casefile_entry *e =
@@ -28,7 +34,7 @@ static int check_version(struct brc_context *ctx, const struct brc_casefile *c)
 /* Keys and sections that stand in each other's place. */
 static int check_top_level(struct brc_context *ctx, const struct brc_casefile *c)
 {
-    char where[BRC_CASEFILE_WHERE_SIZE];
+    char where[BRC_CASEFILE_WHERE_SIZE], hint[BRC_HINT_SIZE];
     for (size_t i = 0; i < c->n_sections; i++)
         if (brc_params_find(brc_casefile_param_list, c->sections[i].name))
             BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %s: takes a text, not a mapping",
@@ -38,12 +44,11 @@ static int check_top_level(struct brc_context *ctx, const struct brc_casefile *c
         const struct brc_casefile_entry *e = &c->entries[i];
         if (*e->section || brc_params_find(brc_casefile_param_list, e->key))
             continue;
-        const char *nearest = brc_params_nearest(brc_casefile_param_list, e->key);
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: %s: unknown key of the top level; allowed breccia, title, model, models and "
-                 "sections, which are mappings `%s: {key: value}`%s%s%s",
+                 "sections, which are mappings `%s: {key: value}`%s",
                  brc_casefile_where(c, e->line, e->is_override, where), e->key, e->key,
-                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+                 brc_params_hint(brc_casefile_param_list, e->key, hint));
     }
     return 0;
 }

@@ -2,7 +2,7 @@
 #include "common/input/numbers.h"
 
 #include "common/base/grow.h"
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { PLACE_SIZE = 320, NAME_SIZE = 128 };
+enum { PLACE_SIZE = 320 };
 
 /* An interval such as "(0, inf)". */
 struct interval {
@@ -239,24 +239,17 @@ static bool choice_name(const char *choices, int k, char *buffer, size_t size)
 static int set_choice(struct brc_context *ctx, const struct brc_param *p, int *to, const char *text,
                       const char *place)
 {
-    char name[NAME_SIZE], nearest[NAME_SIZE] = "";
-    int best = INT_MAX;
-    bool is_near;
+    char name[BRC_NAME_SIZE], hint[BRC_HINT_SIZE];
+    struct brc_nearest nearest = {.text = text};
     for (int k = 0; choice_name(p->choices, k, name, sizeof name); k++) {
         if (strcmp(name, text) == 0) {
             *to = k;
             return 0;
         }
-        int d = brc_params_distance(text, name);
-        if (d < best) {
-            best = d;
-            strcpy(nearest, name);
-        }
+        brc_nearest_add(&nearest, name);
     }
-    is_near = brc_params_is_near(text, best);
-    BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: '%.60s' is not a choice; allowed %.300s%s%s%s", place, text,
-             p->choices, is_near ? "; did you mean '" : "", is_near ? nearest : "",
-             is_near ? "'?" : "");
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: '%.60s' is not a choice; allowed %.300s%s", place, text,
+             p->choices, brc_nearest_hint(&nearest, hint));
 }
 
 static int set_flag(struct brc_context *ctx, int *to, const char *text, const char *place)
@@ -364,21 +357,6 @@ const struct brc_param *brc_params_find(struct brc_param_list list, const char *
     return NULL;
 }
 
-/* Up to size bytes of "a, b, c". */
-static void list_keys(struct brc_param_list list, char *buffer, size_t size)
-{
-    size_t used = 0;
-    buffer[0] = '\0';
-    for (int i = 0; i < list.n; i++) {
-        int n = snprintf(buffer + used, size - used, "%s%s", i ? ", " : "", list.params[i].key);
-        used += (size_t)n;
-        if (used >= size) {
-            strcpy(buffer + size - 4, "...");
-            return;
-        }
-    }
-}
-
 /* What is allowed, where the message does not say it yet. */
 static void add_range(struct brc_context *ctx, const struct brc_param *p)
 {
@@ -392,7 +370,7 @@ static void add_range(struct brc_context *ctx, const struct brc_param *p)
 int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
                    const char *section, const char *key, const char *text, const char *where)
 {
-    char place[PLACE_SIZE], keys[400];
+    char place[PLACE_SIZE], keys[BRC_NAMES_SIZE] = "", hint[BRC_HINT_SIZE];
     const struct brc_param *p = brc_params_find(list, key);
     make_place(place, where, section, key);
     if (p) {
@@ -401,14 +379,14 @@ int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *va
             add_range(ctx, p);
         return code;
     }
-    const char *nearest = brc_params_nearest(list, key);
-    const struct brc_param *meant = nearest ? NULL : brc_params_meant(list, key);
-    list_keys(list, keys, sizeof keys);
+    const struct brc_param *meant =
+        *brc_params_hint(list, key, hint) ? NULL : brc_params_meant(list, key);
+    for (int i = 0; i < list.n; i++)
+        brc_names_add(keys, sizeof keys, list.params[i].key);
     if (meant)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: unknown key; did you mean '%s' (%s)? allowed %s", place,
                  meant->key, meant->meaning, keys);
-    BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: unknown key; allowed %s%s%s%s", place, keys,
-             nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: unknown key; allowed %s%s", place, keys, hint);
 }
 
 /* ---- text and reference -------------------------------------------------------------------- */

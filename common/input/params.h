@@ -15,6 +15,7 @@
 #define BRC_PARAMS_H
 
 #include "common/base/error.h"
+#include "common/base/names.h"
 
 #include <stdio.h>
 
@@ -109,16 +110,12 @@ const char *brc_params_choice(const struct brc_param *p, const void *values, cha
 /* Value of a quantity text ("48.8 GPa") in the SI unit given. */
 int brc_params_quantity(struct brc_context *ctx, const char *text, const char *unit, double *value,
                         const char *where);
-/* The param of this key, NULL when there is none; the nearest key by edit distance, NULL when none
- * is near. */
+/* The param of this key, NULL when there is none. */
 const struct brc_param *brc_params_find(struct brc_param_list list, const char *key);
-const char *brc_params_nearest(struct brc_param_list list, const char *key);
+/* "; did you mean 'key'?" for the nearest key, or ""; returns hint. */
+const char *brc_params_hint(struct brc_param_list list, const char *key, char hint[BRC_HINT_SIZE]);
 /* The param whose meaning has most of the words of the key, NULL when it has none of 4 letters. */
 const struct brc_param *brc_params_meant(struct brc_param_list list, const char *key);
-/* Edit distance without regard to case, INT_MAX for names of 128 bytes or more; is_near tells
- * whether it is small enough for "did you mean". */
-int brc_params_distance(const char *a, const char *b);
-bool brc_params_is_near(const char *text, int distance);
 /* Reference table: key, default, allowed, unit, meaning. */
 void brc_params_print(FILE *out, const char *title, struct brc_param_list list);
 /* Judges a declaration: keys unique and in snake case, units known, ranges readable, defaults in

@@ -3,50 +3,16 @@
 #include "common/input/params.h"
 
 #include <ctype.h>
-#include <limits.h>
 #include <string.h>
 
-enum { NAME_SIZE = 128, LEAST_WORD = 4 };
+enum { LEAST_WORD = 4 };
 
-int brc_params_distance(const char *a, const char *b)
+const char *brc_params_hint(struct brc_param_list list, const char *key, char hint[BRC_HINT_SIZE])
 {
-    int row[NAME_SIZE + 1];
-    size_t na = strlen(a), nb = strlen(b);
-    if (na >= NAME_SIZE || nb >= NAME_SIZE)
-        return INT_MAX;
-    for (size_t j = 0; j <= nb; j++)
-        row[j] = (int)j;
-    for (size_t i = 1; i <= na; i++) {
-        int corner = row[0];
-        row[0] = (int)i;
-        for (size_t j = 1; j <= nb; j++) {
-            int change =
-                corner + (tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]));
-            int shift = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
-            corner = row[j];
-            row[j] = change < shift ? change : shift;
-        }
-    }
-    return row[nb];
-}
-
-const char *brc_params_nearest(struct brc_param_list list, const char *key)
-{
-    const char *nearest = NULL;
-    int best = INT_MAX;
-    for (int i = 0; i < list.n; i++) {
-        int d = brc_params_distance(key, list.params[i].key);
-        if (d < best) {
-            best = d;
-            nearest = list.params[i].key;
-        }
-    }
-    return nearest && brc_params_is_near(key, best) ? nearest : NULL;
-}
-
-bool brc_params_is_near(const char *text, int distance)
-{
-    return distance <= (int)(strlen(text) / 2);
+    struct brc_nearest nearest = {.text = key};
+    for (int i = 0; i < list.n; i++)
+        brc_nearest_add(&nearest, list.params[i].key);
+    return brc_nearest_hint(&nearest, hint);
 }
 
 /* Is the word in the text, without regard to case? */

@@ -2,7 +2,7 @@
 #include "common/output/checksum_header.h"
 
 #include "common/base/table.h"
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/frames.h"
 
+#include "common/base/folders.h"
 #include "common/output/vtk.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
-
-enum { PATH_SIZE = 4096 };
 
 #define BRC_OWNER struct brc_frames
 static const struct brc_field frame_fields[] = {BRC_FRAME_FIELDS(BRC_FIELD, BRC_FIELD3)};
@@ -206,11 +203,11 @@ static int move_peak(struct brc_context *ctx, struct brc_frames *f, const struct
 /* ---- files --------------------------------------------------------------------------------- */
 
 static int in_frames(struct brc_context *ctx, const char *dir, const char *name,
-                     char path[PATH_SIZE])
+                     char path[BRC_PATH_SIZE])
 {
-    if (snprintf(path, PATH_SIZE, "%s/frames%s%s", dir, *name ? "/" : "", name) >= PATH_SIZE)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
-    return 0;
+    char inner[300];
+    snprintf(inner, sizeof inner, "frames%s%s", *name ? "/" : "", name);
+    return brc_folder_path(ctx, dir, inner, path);
 }
 
 /* One file of a frame, with its row (but the role, which may change) as values of the whole. */
@@ -218,7 +215,7 @@ static int write_kind(struct brc_context *ctx, const struct brc_frames *f, size_
                       const char *dir, enum brc_frame_kind kind, const struct brc_mesh *m,
                       const struct brc_h5_extra *extra)
 {
-    char path[PATH_SIZE], name[64];
+    char path[BRC_PATH_SIZE], name[64];
     struct brc_frames now = *f;
     now.step += i;
     now.time += i;
@@ -246,7 +243,7 @@ static int write_series(struct brc_context *ctx, const struct brc_frames *f, con
             time[n++] = f->time[i];
         }
     for (int k = 0; code == 0 && k < BRC_N_FRAME_KINDS; k++) {
-        char path[PATH_SIZE], name[64];
+        char path[BRC_PATH_SIZE], name[64];
         snprintf(name, sizeof name, "%s.hdf.series", kind_name[k]);
         code = in_frames(ctx, dir, name, path);
         if (code == 0)
@@ -261,12 +258,11 @@ static int write_series(struct brc_context *ctx, const struct brc_frames *f, con
 static int write_meshes(struct brc_context *ctx, struct brc_frames *f, size_t i, const char *dir,
                         const struct brc_frame_mesh *mesh, const struct brc_h5_extra *extra)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     const struct brc_mesh *const kinds[BRC_N_FRAME_KINDS] = {&mesh->grains, &mesh->bonds,
                                                              &mesh->contacts};
     BRC_TRY(in_frames(ctx, dir, "", path));
-    if (mkdir(path, 0777) != 0 && errno != EEXIST)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot make the folder %s: %s", path, strerror(errno));
+    BRC_TRY(brc_folder_make(ctx, path));
     for (int k = 0; k < BRC_N_FRAME_KINDS; k++) {
         BRC_TRY(write_kind(ctx, f, i, dir, (enum brc_frame_kind)k, kinds[k], extra));
         f->last[k] = (struct brc_frame_count){kind_name[k], kinds[k]->n_points, kinds[k]->n_cells};
@@ -351,9 +347,10 @@ static bool is_ours(const char *name)
 
 bool brc_frames_find(const char *dir, char *name, size_t size)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     bool is_found = false;
-    DIR *folder = snprintf(path, sizeof path, "%s/frames", dir) < PATH_SIZE ? opendir(path) : NULL;
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    DIR *folder = in_frames(&quiet, dir, "", path) == 0 ? opendir(path) : NULL;
     for (struct dirent *entry; folder && !is_found && (entry = readdir(folder));) {
         is_found = is_ours(entry->d_name);
         snprintf(name, size, "frames/%s", entry->d_name);
@@ -379,7 +376,7 @@ static bool is_left_over(const struct brc_frames *f, const char *name)
 /* Removes the files of frames in DIR/frames that are not in the table; all where f is NULL. */
 static int remove_files(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     int code = 0;
     BRC_TRY(in_frames(ctx, dir, "", path));
     DIR *folder = opendir(path);
@@ -388,10 +385,7 @@ static int remove_files(struct brc_context *ctx, const struct brc_frames *f, con
     for (struct dirent *entry; code == 0 && (entry = readdir(folder));) {
         if (f ? !is_left_over(f, entry->d_name) : !is_ours(entry->d_name))
             continue;
-        code = in_frames(ctx, dir, entry->d_name, path);
-        if (code == 0 && unlink(path) != 0)
-            code = brc_error_set(ctx, BRC_ERR_IO, __FILE__, __LINE__, "cannot remove %s: %s", path,
-                                 strerror(errno));
+        code = brc_folder_remove(ctx, path, entry->d_name);
     }
     closedir(folder);
     return code;
@@ -404,7 +398,7 @@ int brc_frames_sweep(struct brc_context *ctx, const struct brc_frames *f, const 
 
 int brc_frames_remove(struct brc_context *ctx, const char *dir)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     BRC_TRY(remove_files(ctx, NULL, dir));
     BRC_TRY(in_frames(ctx, dir, "", path));
     rmdir(path); /* stays when it holds what is not ours */

@@ -1,25 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/gnuplot.h"
 
+#include "common/base/folders.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-enum { PATH_SIZE = 4096 };
-
-int brc_gnuplot_open(struct brc_context *ctx, const char *dir, const char *name, FILE **out)
-{
-    char path[PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
-    *out = fopen(path, "w");
-    if (!*out)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
-    return 0;
-}
 
 void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int font)
 {
@@ -29,15 +18,6 @@ void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int fo
             "set terminal pngcairo noenhanced size %d,%d font 'sans,%d' background '#ffffff'\n"
             "set output '%s.png'\n",
             name, name, width, height, font, name);
-}
-
-int brc_gnuplot_close(struct brc_context *ctx, const char *dir, const char *name, FILE *out)
-{
-    bool good = !ferror(out);
-    good = fclose(out) == 0 && good;
-    if (!good)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s/%s; is the disk full?", dir, name);
-    return 0;
 }
 
 /* Between double quotes gnuplot runs what stands in backquotes and fills in macros, between single
@@ -81,8 +61,8 @@ static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *scr
 static int check_picture(struct brc_context *ctx, const char *dir, const char *name)
 {
     static const char mark[8] = {'I', 'E', 'N', 'D', '\xae', 'B', '\x60', '\x82'};
-    char path[PATH_SIZE + 16], end[8] = "";
-    snprintf(path, sizeof path, "%s/%s", dir, name);
+    char path[BRC_PATH_SIZE], end[8] = "";
+    BRC_TRY(brc_folder_path(ctx, dir, name, path));
     FILE *file = fopen(path, "rb");
     if (file && fseek(file, -(long)sizeof end, SEEK_END) == 0 &&
         fread(end, sizeof end, 1, file) < 1)

@@ -7,9 +7,6 @@
 
 #include <stdio.h>
 
-/* Opens DIR/NAME for writing; close tells of a full disk. */
-int brc_gnuplot_open(struct brc_context *ctx, const char *dir, const char *name, FILE **out);
-int brc_gnuplot_close(struct brc_context *ctx, const char *dir, const char *name, FILE *out);
 /* First lines of the script <name>.gp, which draws <name>.png of width x height pixels. Markup is
  * off: titles and names stand in the picture as they are. */
 void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int font);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/h5.h"
 
+#include "common/base/folders.h"
+
 #include <hdf5.h>
 
 #include <errno.h>
@@ -14,7 +16,7 @@
 
 _Static_assert(sizeof(hid_t) == sizeof(int64_t), "h5.h keeps handles of HDF5 as int64_t");
 
-enum { PATH_SIZE = 4096, PACK_LEVEL = 4, PACK_ROWS = 1024, CHUNK_BYTES = 1 << 20 };
+enum { PACK_LEVEL = 4, PACK_ROWS = 1024, CHUNK_BYTES = 1 << 20 };
 /* bytes by which files in memory grow */
 enum { CORE_STEP = 1 << 20 };
 
@@ -74,9 +76,9 @@ static hid_t without_times(hid_t class)
 
 /* ---- files --------------------------------------------------------------------------------- */
 
-static int part_path(struct brc_context *ctx, const char *path, char temporary[PATH_SIZE])
+static int part_path(struct brc_context *ctx, const char *path, char temporary[BRC_PATH_SIZE])
 {
-    if (snprintf(temporary, PATH_SIZE, "%s.part", path) >= PATH_SIZE)
+    if (snprintf(temporary, BRC_PATH_SIZE, "%s.part", path) >= BRC_PATH_SIZE)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", path);
     return 0;
 }
@@ -147,7 +149,7 @@ static int sync_path(struct brc_context *ctx, const char *path, int flags)
 /* The complete file takes its place: on disk first, then renamed, then the folder on disk. */
 static int publish(struct brc_context *ctx, const char *temporary, const char *path)
 {
-    char folder[PATH_SIZE];
+    char folder[BRC_PATH_SIZE];
     BRC_TRY(sync_path(ctx, temporary, O_RDONLY));
     if (rename(temporary, path) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot rename %s to %s: %s", temporary, path, strerror(errno));
@@ -157,7 +159,7 @@ static int publish(struct brc_context *ctx, const char *temporary, const char *p
 
 int brc_h5_finish(struct brc_h5_file *f, int code)
 {
-    char temporary[PATH_SIZE], *image = NULL;
+    char temporary[BRC_PATH_SIZE], *image = NULL;
     size_t n = 0;
     if (code == 0)
         code = take_image(f, &image, &n);

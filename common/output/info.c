@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/info.h"
 
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
 #include "common/output/io_h5.h"
 #include "common/output/checksum_header.h"
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/output.h"
 
-#include <errno.h>
+#include "common/base/text_file.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #define BRC_OWNER struct brc_output_params
 static const struct brc_param output_params[] = {BRC_PARAM_LIST(BRC_OUTPUT_PARAMS)};
@@ -14,36 +14,7 @@ static const struct brc_param output_params[] = {BRC_PARAM_LIST(BRC_OUTPUT_PARAM
 const struct brc_param_list brc_output_param_list =
     BRC_PARAMS(output_params, struct brc_output_params);
 
-enum { PATH_SIZE = 4096, CELL_SIZE = 512 };
-
-/* A text file that is written beside its place and renamed when it is complete. */
-struct draft {
-    FILE *file;
-    char path[PATH_SIZE], temporary[PATH_SIZE];
-};
-
-static int open_draft(struct brc_context *ctx, struct draft *d, const char *path)
-{
-    int n = snprintf(d->path, sizeof d->path, "%s", path);
-    int m = snprintf(d->temporary, sizeof d->temporary, "%s.part", path);
-    if (n >= PATH_SIZE || m >= PATH_SIZE)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", path);
-    d->file = fopen(d->temporary, "w");
-    if (!d->file)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", d->temporary, strerror(errno));
-    return 0;
-}
-
-static int close_draft(struct brc_context *ctx, struct draft *d)
-{
-    bool good = fflush(d->file) == 0 && !ferror(d->file) && fsync(fileno(d->file)) == 0;
-    good = fclose(d->file) == 0 && good;
-    if (good && rename(d->temporary, d->path) == 0)
-        return 0;
-    int reason = errno;
-    unlink(d->temporary);
-    BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", d->path, strerror(reason));
-}
+enum { CELL_SIZE = 512 };
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
@@ -114,12 +85,13 @@ static void json_frames(FILE *out, const struct brc_summary *s)
     fputs("\n  },\n", out);
 }
 
-int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s)
+int brc_output_summary(struct brc_context *ctx, const char *dir, const char *name,
+                       const struct brc_summary *s)
 {
     static const char *const checks[] = BRC_ENERGY_CHECKS;
-    struct draft d;
-    BRC_TRY(open_draft(ctx, &d, path));
-    FILE *out = d.file;
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, dir, name));
+    FILE *out = file.out;
     fputs("{\n", out);
     json_text_entry(out, "model", s->model);
     json_text_entry(out, "case", s->case_name);
@@ -146,7 +118,7 @@ int brc_output_summary(struct brc_context *ctx, const char *path, const struct b
     fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
     json_results(out, s);
     fputs("}\n", out);
-    return close_draft(ctx, &d);
+    return brc_text_file_end(ctx, &file);
 }
 
 const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size)
@@ -244,18 +216,11 @@ void brc_output_table(FILE *out, const struct brc_table *t)
     }
 }
 
-int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t)
+int brc_output_csv(struct brc_context *ctx, const char *dir, const char *name,
+                   const struct brc_table *t)
 {
-    struct draft d;
-    BRC_TRY(open_draft(ctx, &d, path));
-    brc_output_table(d.file, t);
-    return close_draft(ctx, &d);
-}
-
-int brc_output_text(struct brc_context *ctx, const char *path, const char *text)
-{
-    struct draft d;
-    BRC_TRY(open_draft(ctx, &d, path));
-    fputs(text, d.file);
-    return close_draft(ctx, &d);
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, dir, name));
+    brc_output_table(file.out, t);
+    return brc_text_file_end(ctx, &file);
 }

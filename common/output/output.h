@@ -75,8 +75,9 @@ struct brc_summary {
     struct brc_summary_value results[BRC_SUMMARY_MAX_RESULTS];
 };
 
-/* summary.json; numbers have 17 digits, what is no number is null. Written beside and renamed. */
-int brc_output_summary(struct brc_context *ctx, const char *path, const struct brc_summary *s);
+/* The file dir/name as in text_file.h; numbers have 17 digits, what is not a number is null. */
+int brc_output_summary(struct brc_context *ctx, const char *dir, const char *name,
+                       const struct brc_summary *s);
 /* One sentence on the energy of a run that is doubtful or wrong, "" on others; returns text. */
 const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size);
 /* A result by name, NULL when the test has none of that name. */
@@ -86,9 +87,8 @@ const struct brc_summary_value *brc_output_result(const struct brc_summary *s, c
 void brc_output_cell(FILE *out, const char *text);
 /* One column a value of the BRC_STATE fields; the header names them with their units:
  * "step [1],x_1 [m],x_2 [m]". */
-int brc_output_csv(struct brc_context *ctx, const char *path, const struct brc_table *t);
+int brc_output_csv(struct brc_context *ctx, const char *dir, const char *name,
+                   const struct brc_table *t);
 void brc_output_table(FILE *out, const struct brc_table *t);
-/* A text file with this content. */
-int brc_output_text(struct brc_context *ctx, const char *path, const char *text);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/plot.h"
 
+#include "common/base/text_file.h"
 #include "common/output/gnuplot.h"
 #include "common/geometry/vec.h"
 
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 4096, N_SHADES = 5 };
+enum { N_SHADES = 5 };
 
 static const double MM = 1e3; /* pictures are in mm */
 /* of a run's panel in a picture of cracks, in heights of the picture */
@@ -39,8 +40,6 @@ int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_s
     struct brc_table table;
     const struct brc_curve *curve = &sim->rig.curve;
     const struct brc_events *e = &sim->events;
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/broken.csv", dir);
     struct brc_fieldset set = BRC_FIELDSET(broken_fields, column);
     brc_table_init(&table, "broken", set, &column);
     BRC_TRY(brc_table_resize(ctx, &table, curve->table.n));
@@ -55,7 +54,7 @@ int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_s
         column.shear[i] = sum[BRC_MODE_SHEAR];
         column.torsion[i] = sum[BRC_MODE_TORSION];
     }
-    int code = brc_output_csv(ctx, path, &table);
+    int code = brc_output_csv(ctx, dir, "broken.csv", &table);
     brc_table_free(&table);
     return code;
 }
@@ -331,9 +330,10 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
     struct view v = choose_view(output, (enum brc_test)sim->rig.params.kind);
     bool used[BRC_N_MODES][N_SHADES];
     struct cracks c;
-    FILE *out;
+    struct brc_text_file file;
     BRC_TRY(classify(ctx, sim, output, &c));
-    int code = brc_gnuplot_open(ctx, dir, "cracks.plot", &out);
+    int code = brc_text_file_begin(ctx, &file, dir, "cracks.plot");
+    FILE *out = file.out;
     if (code == 0) {
         fprintf(out,
                 "# Broken facets of a run of breccia, one block a mode and shade; lengths in mm.\n"
@@ -344,7 +344,7 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
         put_axes(out, &s->domain, &v);
         put_legend(out, &c);
         put_splot(out, used);
-        code = brc_gnuplot_close(ctx, dir, "cracks.plot", out);
+        code = brc_text_file_end(ctx, &file);
     }
     free(c.mode);
     return code;
@@ -360,7 +360,7 @@ static const char *run_colour(int i)
 
 static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const char *name)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s", runs->folder[i], name);
     brc_gnuplot_quoted(out, path);
 }
@@ -423,8 +423,9 @@ static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
 
 static int write_curves(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs)
 {
-    FILE *out;
-    BRC_TRY(brc_gnuplot_open(ctx, dir, "curves.gp", &out));
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, dir, "curves.gp"));
+    FILE *out = file.out;
     brc_gnuplot_head(out, "curves", 1500, 640, 13);
     fputs("set datafile separator ','\nset grid lc rgb '#dddddd' lt 1\nset border 3\n"
           "set tics nomirror\nset key outside top center horizontal\n"
@@ -435,14 +436,15 @@ static int write_curves(struct brc_context *ctx, const char *dir, const struct b
     put_stress_panel(out, runs);
     put_broken_panel(out, runs);
     fputs("unset multiplot\n", out);
-    return brc_gnuplot_close(ctx, dir, "curves.gp", out);
+    return brc_text_file_end(ctx, &file);
 }
 
 static int write_pictures(struct brc_context *ctx, const char *dir,
                           const struct brc_plot_runs *runs, int height)
 {
-    FILE *out;
-    BRC_TRY(brc_gnuplot_open(ctx, dir, "cracks.gp", &out));
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, dir, "cracks.gp"));
+    FILE *out = file.out;
     brc_gnuplot_head(out, "cracks", (int)(PANEL_WIDTH * height * runs->n), height, height / 70);
     fputs("set pm3d depthorder border lc rgb '#202020' lw 0.4\nset border 0\n"
           "panel_scale = 1.0 # of the specimen in its panel\nset multiplot title ",
@@ -459,7 +461,7 @@ static int write_pictures(struct brc_context *ctx, const char *dir,
         fputc('\n', out);
     }
     fputs("unset multiplot\n", out);
-    return brc_gnuplot_close(ctx, dir, "cracks.gp", out);
+    return brc_text_file_end(ctx, &file);
 }
 
 int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/output/vtk.h"
 
+#include "common/base/text_file.h"
 #include "common/output/h5.h"
 #include "common/output/output.h"
 
@@ -110,11 +111,10 @@ void brc_vtk_name(char *name, size_t size, const char *prefix, int64_t step)
 int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix,
                    const int64_t *step, const double *time, size_t n)
 {
-    char *text = NULL, name[64];
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for %s", path);
+    char name[64];
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, NULL, path));
+    FILE *out = file.out;
     fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
     for (size_t i = 0; i < n; i++) {
         brc_vtk_name(name, sizeof name, prefix, step[i]);
@@ -122,10 +122,5 @@ int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix
                 i + 1 < n ? "," : "");
     }
     fputs("  ]\n}\n", out);
-    bool is_good = fclose(out) == 0;
-    int code = is_good ? brc_output_text(ctx, path, text)
-                       : brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
-                                       "out of memory for %s", path);
-    free(text);
-    return code;
+    return brc_text_file_end(ctx, &file);
 }

@@ -13,16 +13,6 @@ struct part {
     size_t length;       /* of the choices */
 };
 
-/* Number of a section, -1 when there is none. */
-static int find_section(const char *name, struct brc_param_list *list)
-{
-    const char *section;
-    for (int i = 0; brc_case_section(i, &section, list); i++)
-        if (strcmp(section, name) == 0)
-            return i;
-    return -1;
-}
-
 /* Takes a part from the text; returns what follows, NULL when it cannot be read. */
 static const char *take_part(const char *text, const char *section, struct part *part)
 {
@@ -65,7 +55,7 @@ static int holds(struct brc_context *ctx, const struct brc_case *run_case, const
 {
     char text[TEXT_SIZE];
     struct brc_param_list list;
-    int i = find_section(part->section, &list);
+    int i = brc_case_find_section(part->section, &list);
     const struct brc_param *p = i < 0 ? NULL : brc_params_find(list, part->key);
     if (!p)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "'%s.%s' is not a key that another one can hang on",
@@ -108,7 +98,7 @@ static bool is_overridden(const struct brc_case *run_case, const char *section, 
     struct brc_param_list list;
     for (const char *at = clause;; at += 4) {
         at = take_part(at, section, &part);
-        find_section(part.section, &list);
+        brc_case_find_section(part.section, &list);
         const struct brc_casefile_entry *e =
             brc_casefile_find_entry(&run_case->file, part.section, part.key, list);
         if (e && e->is_override)
@@ -135,18 +125,16 @@ static bool mentions(const char *applies, const char *section, const struct part
 /* Keys of the section that apply by the same deciding key: "a, b". */
 static int list_others(struct brc_context *ctx, const struct brc_case *run_case,
                        const char *section, struct brc_param_list list, const struct part *decider,
-                       char *text, size_t size)
+                       char text[TEXT_SIZE])
 {
-    size_t used = 0;
     text[0] = '\0';
     for (int i = 0; i < list.n; i++) {
         const char *clause;
         if (!mentions(list.params[i].applies, section, decider))
             continue;
         BRC_TRY(brc_applies(ctx, run_case, section, &list.params[i], &clause));
-        if (!clause && used < size)
-            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
-                                     list.params[i].key);
+        if (!clause)
+            brc_names_add(text, TEXT_SIZE, list.params[i].key);
     }
     return 0;
 }
@@ -159,11 +147,11 @@ static int refuse(struct brc_context *ctx, const struct brc_case *run_case, cons
     struct brc_param_list far;
     char where[BRC_CASEFILE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE];
     take_part(clause, section, &part);
-    int i = find_section(part.section, &far);
+    int i = brc_case_find_section(part.section, &far);
     const struct brc_param *p = brc_params_find(far, part.key);
     const struct brc_casefile_entry *given =
         brc_casefile_find_entry(&run_case->file, part.section, part.key, far);
-    BRC_TRY(list_others(ctx, run_case, section, list, &part, others, sizeof others));
+    BRC_TRY(list_others(ctx, run_case, section, list, &part, others));
     BRC_FAIL(ctx, BRC_ERR_INPUT,
              "%s: %s.%s: applies only with %.*s, but %s.%s is %s%s; leave the key out, or change "
              "%s.%s%s%s",

@@ -2,44 +2,11 @@
 #include "common/runs/case.h"
 
 #include "common/runs/applies.h"
+#include "common/runs/case_files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { N_COMMON = 4, LINE_SIZE = 512 };
-
-bool brc_case_section(int i, const char **name, struct brc_param_list *list)
-{
-    static const char *const common[N_COMMON] = {"specimen", "test", "run", "output"};
-    const struct brc_param_list *const lists[N_COMMON] = {&brc_specimen_param_list,
-                                                          &brc_test_param_list, &brc_run_param_list,
-                                                          &brc_output_param_list};
-    if (i < N_COMMON) {
-        *name = common[i];
-        *list = *lists[i];
-        return true;
-    }
-    if (i - N_COMMON >= brc_registry_count())
-        return false;
-    *name = brc_registry_at(i - N_COMMON)->name;
-    *list = brc_registry_at(i - N_COMMON)->params;
-    return true;
-}
-
-static void *section_values(struct brc_case *run_case, int i)
-{
-    void *const common[N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
-                                    &run_case->output};
-    return i < N_COMMON ? common[i] : run_case->model_params[i - N_COMMON];
-}
-
-const void *brc_case_values(const struct brc_case *run_case, int i)
-{
-    const void *const common[N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
-                                          &run_case->output};
-    return i < N_COMMON ? common[i] : run_case->model_params[i - N_COMMON];
-}
 
 static void take_name(struct brc_case *run_case, const char *path)
 {
@@ -104,16 +71,16 @@ static int check_indents(struct brc_context *ctx, const struct brc_case *run_cas
 
 static int judge(struct brc_context *ctx, struct brc_case *run_case)
 {
-    const char *names[N_COMMON + BRC_CASE_MAX_MODELS];
+    const char *names[BRC_CASE_MAX_SECTIONS];
     struct brc_param_list list;
     int i = 0;
     BRC_TRY(check_indents(ctx, run_case));
     for (; brc_case_section(i, &names[i], &list); i++)
         BRC_TRY(brc_casefile_section(ctx, &run_case->file, names[i], list,
-                                     section_values(run_case, i)));
+                                     brc_case_section_values(run_case, i)));
     BRC_TRY(brc_casefile_finish(ctx, &run_case->file, names, (size_t)i));
     for (int k = 0; k < i; k++)
-        BRC_TRY(brc_applies_check(ctx, run_case, k, section_values(run_case, k)));
+        BRC_TRY(brc_applies_check(ctx, run_case, k, brc_case_section_values(run_case, k)));
     int code = brc_rig_check(ctx, &run_case->test);
     if (code != 0)
         brc_case_locate(ctx, run_case);
@@ -192,120 +159,7 @@ void brc_case_free(struct brc_case *run_case)
     memset(run_case, 0, sizeof *run_case);
 }
 
-int brc_case_model(struct brc_context *ctx, const char *name, const struct brc_model **model)
-{
-    char all[400] = "";
-    *model = brc_registry_find(name);
-    if (*model)
-        return 0;
-    for (int i = 0; i < brc_registry_count(); i++) {
-        size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", brc_registry_at(i)->name);
-    }
-    BRC_FAIL(ctx, BRC_ERR_INPUT, "unknown model '%.60s'; there are: %s", name, all);
-}
-
-int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
-                    const struct brc_model **model, int cap, int *n)
-{
-    int n_named = (int)run_case->file.n_models;
-    *n = n_named > 0 ? n_named : brc_registry_count();
-    if (*n > cap)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%d models to compare, %d at most; name fewer in 'models'", *n,
-                 cap);
-    for (int i = 0; i < *n; i++) {
-        model[i] = brc_registry_at(i);
-        if (n_named > 0)
-            BRC_TRY(brc_case_model(ctx, run_case->file.models[i], &model[i]));
-    }
-    return 0;
-}
-
-const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model)
-{
-    for (int i = 0; i < run_case->n_models; i++)
-        if (brc_registry_at(i) == model)
-            return run_case->model_params[i];
-    return NULL;
-}
-
-/* ---- the parameters as text ---------------------------------------------------------------- */
-
-static char *add_section(struct brc_context *ctx, char *text, const char *section,
-                         struct brc_param_list list, const void *values)
-{
-    char line[LINE_SIZE], value[BRC_TEXT_SIZE];
-    size_t used = text ? strlen(text) : 0;
-    char *grown = brc_realloc(ctx, text, used + (size_t)list.n * LINE_SIZE + 1, 1);
-    if (!grown) {
-        free(text);
-        return NULL;
-    }
-    grown[used] = '\0';
-    for (int i = 0; i < list.n; i++) {
-        if (brc_case_names_file(section, &list.params[i]))
-            continue;
-        brc_params_text(&list.params[i], values, value, sizeof value);
-        int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
-        memcpy(grown + used, line, (size_t)n + 1);
-        used += (size_t)n;
-    }
-    return grown;
-}
-
-char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
-                    const struct brc_model *model)
-{
-    /* an automatic rate as a number: it hangs on strain_max, which may change when a run goes on */
-    struct brc_test_params test = run_case->test;
-    test.rate = brc_rig_start_rate(&test);
-    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &run_case->specimen);
-    if (text)
-        text = add_section(ctx, text, "test", brc_test_param_list, &test);
-    if (text)
-        text = add_section(ctx, text, "run", brc_run_param_list, &run_case->run);
-    if (text)
-        text = add_section(ctx, text, model->name, model->params, brc_case_params(run_case, model));
-    return text;
-}
-
-/* Keys that may differ between the parts of one run. */
-static bool may_change(const char *line, size_t key_length)
-{
-    static const char *const keys[] = {"test.strain_max", "test.stop_drop",       "run.max_steps",
-                                       "run.checkpoint",  "run.checkpoint_steps", "run.simd",
-                                       "specimen.cache"};
-    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
-        if (strlen(keys[i]) == key_length && strncmp(line, keys[i], key_length) == 0)
-            return true;
-    return false;
-}
-
-int brc_case_same(struct brc_context *ctx, const char *saved, const char *now)
-{
-    while (*saved && *now) {
-        size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
-        bool equal = a == b && strncmp(saved, now, a) == 0;
-        bool is_allowed = may_change(saved, strcspn(saved, " ")) && may_change(now, key);
-        if (!equal && !is_allowed)
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "the saved state was made with '%.*s', the case says '%.*s'; resume with "
-                     "unchanged parameters (--set included%s) or start anew with --force",
-                     (int)a, saved, (int)b, now,
-                     strncmp(now, "test.rate ", 10) == 0
-                         ? "; an automatic rate follows test.strain_max: give the first one"
-                         : "");
-        saved += a + (saved[a] != '\0');
-        now += b + (now[b] != '\0');
-    }
-    if (*saved || *now)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "the saved state has other parameters than this version; "
-                 "resume with the version that wrote it");
-    return 0;
-}
-
-/* ---- places of keys ------------------------------------------------------------------------ */
+/* ---- places in messages --------------------------------------------------------------------- */
 
 /* Does text start with "section.key" of the list? key gets the key. */
 static bool starts_with_key(const char *text, const char *section, struct brc_param_list list,

@@ -1,63 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files that a case names, and the case that a run keeps. */
 #define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): glibc has realpath so */
 
-#include "common/runs/case.h"
+#include "common/runs/case_keep.h"
 
 #include "common/runs/applies.h"
+#include "common/runs/case_files.h"
+#include "common/runs/case_text.h"
 
-#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-bool brc_case_names_file(const char *section, const struct brc_param *p)
-{
-    return p->kind == BRC_TEXT && strcmp(section, "specimen") == 0;
-}
-
-static char *text_of(const struct brc_param *p, struct brc_specimen_params *values)
-{
-    return (char *)values + p->offset;
-}
-
-/* ---- where files are ----------------------------------------------------------------------- */
-
-/* A case that comes through a pipe has no folder of its own. */
-static bool has_folder(const char *path)
-{
-    struct stat status;
-    return strchr(path, '/') && (stat(path, &status) != 0 || S_ISREG(status.st_mode));
-}
-
-static int find_file(struct brc_context *ctx, const struct brc_case *run_case, const char *key,
-                     char *name)
-{
-    const char *path = run_case->file.path, *slash = strrchr(path, '/');
-    char found[BRC_TEXT_SIZE];
-    const struct brc_casefile_entry *e =
-        brc_casefile_find_entry(&run_case->file, "specimen", key, brc_specimen_param_list);
-    if (!e || e->is_override || *name == '\0' || *name == '/' || !has_folder(path))
-        return 0;
-    int n = snprintf(found, sizeof found, "%.*s%s", (int)(slash - path) + 1, path, name);
-    if (n >= (int)sizeof found)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%s:%d: specimen.%s: the path %.*s%s is longer than %d bytes; start breccia in a "
-                 "folder that is nearer to it",
-                 path, e->line, key, (int)(slash - path) + 1, path, name, BRC_TEXT_SIZE - 1);
-    memcpy(name, found, sizeof found);
-    return 0;
-}
-
-int brc_case_find_files(struct brc_context *ctx, struct brc_case *run_case)
-{
-    for (int i = 0; i < brc_specimen_param_list.n; i++) {
-        const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_case_names_file("specimen", p))
-            BRC_TRY(find_file(ctx, run_case, p->key, text_of(p, &run_case->specimen)));
-    }
-    return 0;
-}
 
 /* The absolute path of a file's folder; the file itself may be a link. Allocated, NULL when there
  * is no such folder. */
@@ -95,27 +47,6 @@ static int path_between(const char *from, const char *to, char *path, size_t siz
     return used + 4 >= size || used + (size_t)n >= size ? -1 : 0;
 }
 
-bool brc_case_is_same_file(const char *name, const char *path)
-{
-    struct stat a, b;
-    return *name && stat(name, &a) == 0 && stat(path, &b) == 0 && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
-bool brc_case_is_input(const struct brc_case *run_case, const char *path)
-{
-    struct brc_specimen_params specimen = run_case->specimen;
-    bool is_input = brc_case_is_same_file(run_case->file.path, path);
-    for (int i = 0; i < brc_specimen_param_list.n; i++) {
-        const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_case_names_file("specimen", p))
-            is_input = is_input || brc_case_is_same_file(text_of(p, &specimen), path);
-    }
-    return is_input;
-}
-
-/* ---- the case that is kept ----------------------------------------------------------------- */
-
 /* A relative name as the folder dir sees it. */
 static int keep_file(struct brc_context *ctx, struct brc_casefile *c, const struct brc_param *p,
                      const char *name, const char *dir)
@@ -146,23 +77,12 @@ static int keep_file(struct brc_context *ctx, struct brc_casefile *c, const stru
 static int keep_files(struct brc_context *ctx, const struct brc_case *run_case, const char *dir,
                       struct brc_casefile *c)
 {
-    struct brc_specimen_params specimen = run_case->specimen;
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
         if (brc_case_names_file("specimen", p))
-            BRC_TRY(keep_file(ctx, c, p, text_of(p, &specimen), dir));
+            BRC_TRY(keep_file(ctx, c, p, (const char *)&run_case->specimen + p->offset, dir));
     }
     return 0;
-}
-
-static struct brc_param_list list_of(const char *section)
-{
-    const char *name;
-    struct brc_param_list list;
-    for (int i = 0; brc_case_section(i, &name, &list); i++)
-        if (strcmp(name, section) == 0)
-            return list;
-    return brc_casefile_param_list;
 }
 
 /* Of several overrides of a key the last one holds. */
@@ -171,7 +91,9 @@ static int keep_overrides(struct brc_context *ctx, const struct brc_casefile *fr
 {
     for (size_t i = 0; i < from->n; i++) {
         const struct brc_casefile_entry *e = &from->entries[i];
-        const struct brc_param_list list = list_of(e->section);
+        struct brc_param_list list;
+        if (brc_case_find_section(e->section, &list) < 0)
+            list = brc_casefile_param_list;
         const char *key = brc_casefile_key(e, list);
         if (e->is_override && brc_casefile_find_entry(from, e->section, key, list) == e)
             BRC_TRY(brc_casefile_write(ctx, c, e->section, key, list, e->text));

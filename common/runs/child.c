@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/runs/child.h"
 
-#include "common/runs/run.h"
+#include "common/base/signals.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -161,7 +161,7 @@ int brc_children_listen(struct brc_context *ctx, struct brc_child *child, int n,
     int code = poll(ready, (nfds_t)n_ready, STOP_MS);
     if (code < 0 && errno != EINTR)
         BRC_FAIL(ctx, BRC_ERR_IO, "lost the runs: %s", strerror(errno));
-    if (brc_run_is_stopped())
+    if (brc_signals_held())
         brc_children_stop(child, n);
     for (int k = 0; k < n_ready && code >= 0; k++)
         if (ready[k].revents != 0 && !read_report(&child[index[k]], index[k], progress))

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/runs/compare.h"
 
+#include "common/base/signals.h"
+#include "common/base/text_file.h"
 #include "common/runs/child.h"
 #include "common/output/plot.h"
 
@@ -8,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 4096, MAX_RUNS = BRC_PROGRESS_MAX_RUNS };
+enum { MAX_RUNS = BRC_PROGRESS_MAX_RUNS };
 
 struct compare;
 
@@ -16,12 +18,12 @@ struct compare;
 struct model_run {
     const struct compare *compare;
     const struct brc_model *model;
-    char dir[PATH_SIZE];
+    char dir[BRC_PATH_SIZE];
 };
 
 struct compare {
     struct brc_context *ctx;
-    const struct brc_compare_order *order;
+    const struct brc_compare_options *order;
     struct brc_progress progress;
     int n, n_started;
     struct model_run run[MAX_RUNS];
@@ -36,10 +38,8 @@ static int add_model(struct compare *c, const struct brc_model *model)
     run->compare = c;
     run->model = model;
     snprintf(c->child[c->n].name, sizeof c->child[c->n].name, "%s", model->name);
-    if (snprintf(run->dir, PATH_SIZE, "%s/%s", c->order->dir, model->name) >= PATH_SIZE)
-        BRC_FAIL(c->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", c->order->dir);
     c->n++;
-    return 0;
+    return brc_folder_path(c->ctx, c->order->dir, model->name, run->dir);
 }
 
 static int choose_models(struct compare *c)
@@ -74,8 +74,8 @@ static int run_model(struct brc_context *ctx, const void *user, struct brc_progr
                      struct brc_summary *out)
 {
     const struct model_run *run = user;
-    const struct brc_compare_order *o = run->compare->order;
-    const struct brc_run_order order = {
+    const struct brc_compare_options *o = run->compare->order;
+    const struct brc_run_options order = {
         .run_case = o->run_case,
         .model = run->model,
         .specimen = o->specimen,
@@ -91,7 +91,7 @@ static int run_all(struct compare *c)
 {
     int at_once = brc_children_at_once(), n_running;
     while ((n_running = brc_children_running(c->child, c->n)) > 0 || c->n_started < c->n) {
-        bool may_start = c->n_started < c->n && !brc_run_is_stopped();
+        bool may_start = c->n_started < c->n && !brc_signals_held();
         if (may_start && n_running < at_once) {
             int i = c->n_started++;
             const struct brc_child_work work = {run_model, &c->run[i]};
@@ -113,16 +113,14 @@ static bool is_interrupt(const struct brc_child *child)
 /* Tells of which models there is a state to go on from: those that have begun now or before. */
 static int fail_interrupted(struct compare *c)
 {
-    char begun[MAX_RUNS * sizeof c->child[0].name] = "";
-    size_t used = 0;
+    char begun[BRC_NAMES_SIZE] = "";
     for (int i = 0; i < c->n; i++) {
         bool was_begun = c->order->is_resumed && brc_run_has_begun(c->run[i].dir);
         bool has_ended = i < c->n_started && c->child[i].outcome.code != BRC_ERR_NOT_BEGUN;
         if (was_begun || has_ended)
-            used += (size_t)snprintf(begun + used, sizeof begun - used, "%s%s", used ? ", " : "",
-                                     c->child[i].name);
+            brc_names_add(begun, sizeof begun, c->child[i].name);
     }
-    if (used == 0)
+    if (!*begun)
         BRC_FAIL(c->ctx, BRC_ERR_NOT_BEGUN,
                  "interrupted before the first step; nothing was saved in %s", c->order->dir);
     BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; saved in %s: %s", c->order->dir, begun);
@@ -158,22 +156,14 @@ static int judge_energy(const struct compare *c)
 static int write_table(struct compare *c)
 {
     const struct brc_summary *summary[MAX_RUNS];
-    char path[PATH_SIZE], *text = NULL;
-    size_t size = 0;
+    struct brc_text_file file;
     for (int i = 0; i < c->n; i++)
         summary[i] = &c->child[i].outcome.summary;
-    if (snprintf(path, sizeof path, "%s/compare.txt", c->order->dir) >= PATH_SIZE)
-        BRC_FAIL(c->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", c->order->dir);
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        BRC_FAIL(c->ctx, BRC_ERR_MEMORY, "out of memory for the table");
-    brc_compare_table(out, summary, c->n);
-    fclose(out);
-    int code = brc_output_text(c->ctx, path, text);
-    fputs(text, stdout);
+    brc_compare_table(stdout, summary, c->n);
     fflush(stdout);
-    free(text);
-    return code;
+    BRC_TRY(brc_text_file_begin(c->ctx, &file, c->order->dir, "compare.txt"));
+    brc_compare_table(file.out, summary, c->n);
+    return brc_text_file_end(c->ctx, &file);
 }
 
 static int draw(struct compare *c)
@@ -193,7 +183,7 @@ static int check_folders(const struct compare *c)
 {
     static const char *const names[] = {"compare.txt", "curves.gp", "curves.png", "cracks.gp",
                                         "cracks.png"};
-    const struct brc_compare_order *o = c->order;
+    const struct brc_compare_options *o = c->order;
     bool has_begun = false;
     for (int i = 0; i < c->n; i++) {
         bool is_resumed = o->is_resumed && brc_run_has_begun(c->run[i].dir);
@@ -204,7 +194,7 @@ static int check_folders(const struct compare *c)
                              has_begun || o->is_forced);
 }
 
-int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
+int brc_compare(struct brc_context *ctx, const struct brc_compare_options *order)
 {
     struct compare *c = brc_alloc(ctx, 1, sizeof *c);
     const char *label[MAX_RUNS];
@@ -220,7 +210,7 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order)
     if (code == 0)
         code = try_models(c);
     if (code == 0)
-        code = brc_run_make_folder(ctx, order->dir);
+        code = brc_folder_make(ctx, order->dir);
     if (code == 0) {
         brc_progress_begin(&c->progress, stderr, label, c->n, order->is_quiet);
         code = run_all(c);

@@ -5,7 +5,7 @@
 
 #include "common/runs/run.h"
 
-struct brc_compare_order {
+struct brc_compare_options {
     const struct brc_case *run_case;
     const struct brc_specimen *specimen;
     const char *dir;            /* the results of a model go to dir/<model> */
@@ -16,7 +16,7 @@ struct brc_compare_order {
 /* Runs all models of the case, as many at a time as there are processors; prints the table and
  * writes it to dir/compare.txt, and draws both models' curves and cracks. Start no MPI before: the
  * models run in forked processes. */
-int brc_compare(struct brc_context *ctx, const struct brc_compare_order *order);
+int brc_compare(struct brc_context *ctx, const struct brc_compare_options *order);
 
 /* A unit to show a value in. */
 struct brc_shown {

@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/runs/converge.h"
 
+#include "common/base/signals.h"
+#include "common/base/text_file.h"
 #include "common/runs/child.h"
+#include "common/runs/converge_axes.h"
+#include "common/runs/converge_plot.h"
 #include "common/runs/converge_record.h"
+#include "common/runs/converge_table.h"
 #include "common/runs/run.h"
 
 #include <errno.h>
@@ -13,15 +18,15 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PATH_SIZE = 4096, MAX_JOBS = BRC_PROGRESS_MAX_RUNS };
+enum { MAX_JOBS = BRC_PROGRESS_MAX_RUNS };
 
 /* A run that a child does. */
 struct task {
-    const struct brc_converge_order *order;
+    const struct brc_converge_options *order;
     struct brc_converge_model *model;
     struct brc_converge_setting *setting;
     int seed; /* number of the specimen */
-    char dir[PATH_SIZE];
+    char dir[BRC_PATH_SIZE];
 };
 
 struct ladder {
@@ -38,7 +43,7 @@ struct ladder {
 
 /* ---- what can be refused ------------------------------------------------------------------- */
 
-static int check_order(struct brc_context *ctx, const struct brc_converge_order *o)
+static int check_order(struct brc_context *ctx, const struct brc_converge_options *o)
 {
     const struct brc_specimen_params *p = &o->run_case->specimen;
     bool is_given = p->grains == BRC_GRAINS_POINTS || p->grains == BRC_GRAINS_TESS;
@@ -56,16 +61,15 @@ static int check_order(struct brc_context *ctx, const struct brc_converge_order 
 
 static int find_observable(struct brc_context *ctx, struct brc_converge_study *study)
 {
-    char all[600] = "";
+    char all[BRC_NAMES_SIZE] = "";
     for (int i = 0; i < study->n_results; i++) {
-        size_t used = strlen(all);
         if (strcmp(study->results[i].name, study->order->observable) == 0) {
             study->observable = i;
             return 0;
         }
-        snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", study->results[i].name);
+        brc_names_add(all, sizeof all, study->results[i].name);
     }
-    BRC_FAIL(ctx, BRC_ERR_USAGE, "--observable: this test measures no '%.60s'; there are: %s",
+    BRC_FAIL(ctx, BRC_ERR_USAGE, "--observable: this test does not measure '%.60s'; there are: %s",
              study->order->observable, all);
 }
 
@@ -87,7 +91,7 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
 
 static int choose_models(struct ladder *l)
 {
-    const struct brc_converge_order *o = l->study.order;
+    const struct brc_converge_options *o = l->study.order;
     const struct brc_model *model[BRC_CONVERGE_MAX_MODELS];
     l->study.n_models = 1;
     if (o->model)
@@ -117,8 +121,8 @@ static int check_folder(const struct ladder *l)
 {
     static const char *const names[] = {"converge_runs.csv", "converge.txt", "converge.csv",
                                         "converge.gp",       "converge.png", "converge_unfinished"};
-    const struct brc_converge_order *o = l->study.order;
-    bool may_go_on = o->is_resumed && brc_run_has_file(o->dir, "converge_runs.csv");
+    const struct brc_converge_options *o = l->study.order;
+    bool may_go_on = o->is_resumed && brc_folder_has(o->dir, "converge_runs.csv");
     return brc_run_check_own(l->ctx, o->dir, o->run_case, names, sizeof names / sizeof names[0],
                              may_go_on || o->is_forced);
 }
@@ -127,7 +131,7 @@ static int check_folder(const struct ladder *l)
 static int prepare(struct ladder *l)
 {
     struct brc_converge_study *study = &l->study;
-    const struct brc_converge_order *o = study->order;
+    const struct brc_converge_options *o = study->order;
     BRC_TRY(check_order(l->ctx, o));
     BRC_TRY(choose_models(l));
     BRC_TRY(brc_converge_read_axes(l->ctx, o, study->model, study->n_models, &l->axes));
@@ -137,14 +141,14 @@ static int prepare(struct ladder *l)
     for (int i = 0; i < study->n_models; i++)
         BRC_TRY(brc_converge_first_settings(l->ctx, o, &study->model[i]));
     brc_log(l->ctx, "%s: %zu grains, specimens: %d", o->run_case->name, l->n_grains, o->seeds);
-    BRC_TRY(brc_run_make_folder(l->ctx, o->dir));
+    BRC_TRY(brc_folder_make(l->ctx, o->dir));
     return brc_converge_record_open(l->ctx, &l->record, study);
 }
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
 /* What is in the way of a run is not its setting's fault: the ladder ends. */
-static int check_place(struct brc_context *ctx, const struct brc_run_order *o)
+static int check_place(struct brc_context *ctx, const struct brc_run_options *o)
 {
     int code = brc_run_check_folder(ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
     return code == BRC_ERR_INPUT ? (ctx->code = BRC_ERR_USAGE) : code;
@@ -157,17 +161,17 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
     struct brc_specimen specimen = {0};
     struct brc_case run_case;
     bool has_begun = brc_run_has_begun(t->dir);
-    bool goes_on = t->order->is_resumed && has_begun && brc_run_has_file(t->dir, "state.h5");
-    int code = brc_converge_job(ctx, t->order->run_case, t->setting, t->seed, &run_case);
+    bool goes_on = t->order->is_resumed && has_begun && brc_folder_has(t->dir, "state.h5");
+    int code = brc_converge_case(ctx, t->order->run_case, t->setting, t->seed, &run_case);
     if (code == 0)
         code = brc_specimen_create(ctx, &run_case.specimen, &specimen);
-    const struct brc_run_order order = {.run_case = &run_case,
-                                        .model = t->model->model,
-                                        .specimen = &specimen,
-                                        .dir = t->dir,
-                                        .is_resumed = goes_on,
-                                        .is_forced = has_begun && !goes_on,
-                                        .progress = progress};
+    const struct brc_run_options order = {.run_case = &run_case,
+                                          .model = t->model->model,
+                                          .specimen = &specimen,
+                                          .dir = t->dir,
+                                          .is_resumed = goes_on,
+                                          .is_forced = has_begun && !goes_on,
+                                          .progress = progress};
     if (code == 0)
         code = check_place(ctx, &order);
     if (code == 0)
@@ -271,9 +275,9 @@ static int start_task(struct ladder *l, int slot, const struct task *task)
     *t = *task;
     t->order = l->study.order;
     uint64_t key = t->setting->run[t->seed].key;
-    if (snprintf(t->dir, PATH_SIZE, "%s/converge_unfinished/%016" PRIx64, t->order->dir, key) >=
-        PATH_SIZE)
-        BRC_FAIL(l->ctx, BRC_ERR_INPUT, "the path %.80s... is too long", t->order->dir);
+    char name[64];
+    snprintf(name, sizeof name, "converge_unfinished/%016" PRIx64, key);
+    BRC_TRY(brc_folder_path(l->ctx, t->order->dir, name, t->dir));
     snprintf(l->child[slot].name, sizeof l->child[slot].name, "%s", t->model->model->name);
     const struct brc_child_work work = {run_task, t};
     return brc_children_start(l->ctx, l->child, l->study.order->jobs, slot, &work);
@@ -298,7 +302,7 @@ static int offer(struct ladder *l, const struct task *task)
 {
     struct brc_converge_run *run = &task->setting->run[task->seed];
     int n = l->study.order->jobs;
-    while (is_missing(l, run) && !brc_run_is_stopped()) {
+    while (is_missing(l, run) && !brc_signals_held()) {
         int slot = 0;
         while (slot < n && l->child[slot].pipe >= 0)
             slot++;
@@ -383,8 +387,8 @@ static int run_all(struct ladder *l)
         BRC_TRY(brc_converge_axis_settings(l->ctx, l->study.order, &l->axes, m));
     }
     BRC_TRY(run_phase(l, 1, BRC_CONVERGE_MAX_SETTINGS));
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/converge_unfinished", l->study.order->dir);
+    char path[BRC_PATH_SIZE];
+    BRC_TRY(brc_folder_path(l->ctx, l->study.order->dir, "converge_unfinished", path));
     rmdir(path);
     return 0;
 }
@@ -394,24 +398,20 @@ static int run_all(struct ladder *l)
 static int report(struct ladder *l)
 {
     const struct brc_converge_study *study = &l->study;
-    char path[PATH_SIZE], *text = NULL;
-    size_t size = 0;
+    struct brc_text_file file;
     struct brc_converge_report *reports =
         brc_alloc(l->ctx, (size_t)study->n_models, sizeof *reports);
-    FILE *out = reports ? open_memstream(&text, &size) : NULL;
-    if (!out) {
-        free(reports);
-        BRC_FAIL(l->ctx, BRC_ERR_MEMORY, "out of memory for the table");
-    }
+    if (!reports)
+        return BRC_ERR_MEMORY;
     for (int i = 0; i < study->n_models; i++)
-        brc_converge_judge(study, i, &reports[i]);
-    brc_converge_print(out, study, reports);
-    fclose(out);
-    snprintf(path, sizeof path, "%s/converge.txt", study->order->dir);
-    int code = brc_output_text(l->ctx, path, text);
-    fputs(text, stdout);
+        brc_converge_report_make(study, i, &reports[i]);
+    brc_converge_print(stdout, study, reports);
     fflush(stdout);
-    free(text);
+    int code = brc_text_file_begin(l->ctx, &file, study->order->dir, "converge.txt");
+    if (code == 0) {
+        brc_converge_print(file.out, study, reports);
+        code = brc_text_file_end(l->ctx, &file);
+    }
     if (code == 0)
         code = brc_converge_csv(l->ctx, study, reports);
     if (code == 0)
@@ -420,7 +420,7 @@ static int report(struct ladder *l)
     return code;
 }
 
-int brc_converge(struct brc_context *ctx, const struct brc_converge_order *order)
+int brc_converge(struct brc_context *ctx, const struct brc_converge_options *order)
 {
     struct ladder *l = brc_alloc(ctx, 1, sizeof *l);
     if (!l)

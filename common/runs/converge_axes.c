@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/runs/converge.h"
+#include "common/runs/converge_axes.h"
+
+#include "common/runs/case_text.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -54,22 +56,20 @@ static int add_axis(struct brc_context *ctx, struct brc_converge_axes *axes, con
 static int fail_axis(struct brc_context *ctx, const struct brc_converge_model *models, int n_models,
                      const char *name)
 {
-    char all[600] = "";
-    size_t used = 0;
+    char all[BRC_NAMES_SIZE] = "";
     for (int i = 0; i < N_LADDERS; i++)
-        used += (size_t)snprintf(all + used, sizeof all - used, "%s, ", ladders[i]);
+        brc_names_add(all, sizeof all, ladders[i]);
     for (int i = 0; i < n_models; i++) {
         const struct brc_param_list list = models[i].model->params;
-        for (int k = 0; k < list.n && used < sizeof all - 80; k++)
+        for (int k = 0; k < list.n; k++)
             if (find_choice(models[i].model, list.params[k].key) &&
                 !strstr(all, list.params[k].key))
-                used += (size_t)snprintf(all + used, sizeof all - used, "%s, ", list.params[k].key);
+                brc_names_add(all, sizeof all, list.params[k].key);
     }
-    all[used - 2] = '\0';
     BRC_FAIL(ctx, BRC_ERR_USAGE, "--axes: no axis '%.60s'; there are: %s", name, all);
 }
 
-int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_order *order,
+int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *order,
                            const struct brc_converge_model *models, int n_models,
                            struct brc_converge_axes *axes)
 {
@@ -110,8 +110,8 @@ static void add_line(struct brc_converge_setting *s, const char *format, ...)
     snprintf(s->text + used, sizeof s->text - used, "%s\n", line);
 }
 
-int brc_converge_job(struct brc_context *ctx, const struct brc_case *run_case,
-                     const struct brc_converge_setting *s, int i, struct brc_case *out)
+int brc_converge_case(struct brc_context *ctx, const struct brc_case *run_case,
+                      const struct brc_converge_setting *s, int i, struct brc_case *out)
 {
     /* files for a look at a run are not wanted */
     const char *line[MAX_LINES] = {"output.plots=off", "output.frames=0", "output.frame_strain=0",
@@ -142,14 +142,14 @@ static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
 }
 
 /* Judges the setting on all specimens; *is_good tells whether its values are in range. */
-static int check(struct brc_context *ctx, const struct brc_converge_order *order,
+static int check(struct brc_context *ctx, const struct brc_converge_options *order,
                  const struct brc_converge_model *m, struct brc_converge_setting *s, bool *is_good)
 {
     *is_good = true;
     for (int i = 0; i < order->seeds && *is_good; i++) {
         struct brc_context own = BRC_CONTEXT_INIT;
         struct brc_case run_case;
-        int code = brc_converge_job(&own, order->run_case, s, i, &run_case);
+        int code = brc_converge_case(&own, order->run_case, s, i, &run_case);
         if (code == 0)
             code = make_key(&own, &run_case, m, &s->run[i].key);
         brc_case_free(&run_case);
@@ -163,7 +163,7 @@ static int check(struct brc_context *ctx, const struct brc_converge_order *order
     return 0;
 }
 
-static int add(struct brc_context *ctx, const struct brc_converge_order *order,
+static int add(struct brc_context *ctx, const struct brc_converge_options *order,
                struct brc_converge_model *m, const struct brc_converge_setting *s)
 {
     bool is_good;
@@ -245,7 +245,7 @@ static double largest_step(const struct brc_run_params *run)
     return run->dt > 0 ? 1 : 0.95 / run->dt_margin;
 }
 
-static int add_step(struct brc_context *ctx, const struct brc_converge_order *order,
+static int add_step(struct brc_context *ctx, const struct brc_converge_options *order,
                     struct brc_converge_model *m)
 {
     static const double factors[] = {0.25, 0.5, 1, 1.41421356, 2};
@@ -260,7 +260,7 @@ static int add_step(struct brc_context *ctx, const struct brc_converge_order *or
     return 0;
 }
 
-static int add_loading(struct brc_context *ctx, const struct brc_converge_order *order,
+static int add_loading(struct brc_context *ctx, const struct brc_converge_options *order,
                        struct brc_converge_model *m)
 {
     for (int k = 1; k <= COARSEST * order->refine; k *= 2) {
@@ -281,7 +281,7 @@ static double rounded(double rate)
 }
 
 /* Around the rate of the case, or the mean rate that its adaptive loading has found. */
-static int add_rate(struct brc_context *ctx, const struct brc_converge_order *order,
+static int add_rate(struct brc_context *ctx, const struct brc_converge_options *order,
                     struct brc_converge_model *m)
 {
     bool is_fixed = m->test.loading == BRC_LOADING_FIXED;
@@ -301,7 +301,7 @@ static int add_rate(struct brc_context *ctx, const struct brc_converge_order *or
 
 /* ---- choices and grains -------------------------------------------------------------------- */
 
-static int add_choice(struct brc_context *ctx, const struct brc_converge_order *order,
+static int add_choice(struct brc_context *ctx, const struct brc_converge_options *order,
                       struct brc_converge_model *m, const char *key)
 {
     const struct brc_param *p = find_choice(m->model, key);
@@ -341,7 +341,7 @@ static bool put_grains(struct brc_converge_setting *s, const struct brc_specimen
     return true;
 }
 
-static int add_grains(struct brc_context *ctx, const struct brc_converge_order *order,
+static int add_grains(struct brc_context *ctx, const struct brc_converge_options *order,
                       struct brc_converge_model *m)
 {
     static const double factors[] = {0.8, 1, 1.25};
@@ -358,7 +358,7 @@ static int add_grains(struct brc_context *ctx, const struct brc_converge_order *
 
 /* ---- all of a model ------------------------------------------------------------------------ */
 
-int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_order *order,
+int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *order,
                                 struct brc_converge_model *m)
 {
     double finest = 1.0 / order->refine;
@@ -387,10 +387,10 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
     return 0;
 }
 
-int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_order *order,
+int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_options *order,
                                const struct brc_converge_axes *axes, struct brc_converge_model *m)
 {
-    int (*const act[N_LADDERS])(struct brc_context *, const struct brc_converge_order *,
+    int (*const act[N_LADDERS])(struct brc_context *, const struct brc_converge_options *,
                                 struct brc_converge_model *) = {add_step, add_loading, add_rate,
                                                                 add_grains};
     for (int i = 0; i < axes->n; i++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/runs/converge.h"
+#include "common/runs/converge_plot.h"
 
+#include "common/base/text_file.h"
 #include "common/output/gnuplot.h"
 
 #include <math.h>
@@ -169,8 +170,9 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
     const struct brc_case *run_case = study->order->run_case;
     int first[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES], n[BRC_CONVERGE_MAX_MODELS];
     int n_points[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES];
-    FILE *out;
-    BRC_TRY(brc_gnuplot_open(ctx, study->order->dir, "converge.gp", &out));
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, study->order->dir, "converge.gp"));
+    FILE *out = file.out;
     brc_gnuplot_head(out, "converge", 760 * study->n_models, 660, 12);
     fprintf(out,
             "set logscale xy\nset grid lc rgb '#dddddd' lt 1\nset border 3\nset tics nomirror\n"
@@ -190,6 +192,6 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
     for (int i = 0; i < study->n_models; i++)
         put_panel(out, &report[i], i, first[i], n_points[i], n[i]);
     fputs("unset multiplot\n", out);
-    BRC_TRY(brc_gnuplot_close(ctx, study->order->dir, "converge.gp", out));
+    BRC_TRY(brc_text_file_end(ctx, &file));
     return run_case->output.plots ? brc_gnuplot_draw(ctx, study->order->dir, picture, 1) : 0;
 }

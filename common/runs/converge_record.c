@@ -135,11 +135,10 @@ static int lock(struct brc_context *ctx, const struct brc_converge_record *r)
 int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record *r,
                              const struct brc_converge_study *study)
 {
-    const struct brc_converge_order *o = study->order;
+    const struct brc_converge_options *o = study->order;
     char header[HEADER_SIZE];
     *r = (struct brc_converge_record){.n_results = study->n_results};
-    if (snprintf(r->path, sizeof r->path, "%s/converge_runs.csv", o->dir) >= (int)sizeof r->path)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", o->dir);
+    BRC_TRY(brc_folder_path(ctx, o->dir, "converge_runs.csv", r->path));
     r->file = fopen(r->path, "a+");
     if (!r->file)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));

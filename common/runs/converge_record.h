@@ -4,11 +4,12 @@
 #ifndef BRC_CONVERGE_RECORD_H
 #define BRC_CONVERGE_RECORD_H
 
-#include "common/runs/converge.h"
+#include "common/base/folders.h"
+#include "common/runs/converge_study.h"
 
 struct brc_converge_record {
     FILE *file;
-    char path[4096];
+    char path[BRC_PATH_SIZE];
     int n_results;
     size_t n, cap;
     struct brc_converge_run *run; /* finished ones */

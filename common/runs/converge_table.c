@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/runs/converge.h"
+#include "common/runs/converge_table.h"
 
+#include "common/base/text_file.h"
 #include "common/runs/compare.h"
 #include "common/output/output.h"
 
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 104, PATH_SIZE = 4096, TEXT_SIZE = 40 };
+enum { WIDTH = 104, TEXT_SIZE = 40 };
 
 /* Errors at which the steps of both kinds of loading are compared. */
 static const double levels[] = {0.01, 0.02, 0.05, 0.1};
@@ -42,12 +43,6 @@ static const char *percent(double part, bool is_signed, char text[TEXT_SIZE])
 }
 
 /* ---- one model ----------------------------------------------------------------------------- */
-
-bool brc_converge_is_shown(const struct brc_converge_report *r, int i, double error)
-{
-    const struct brc_converge_error *e = &r->row[i].error;
-    return fabs(e->mean) + hypot(e->deviation, r->uncertainty) <= error;
-}
 
 static void put_row(FILE *out, const struct brc_converge_report *r, int i, struct brc_shown shown,
                     int n_seeds)
@@ -249,12 +244,10 @@ static void put_csv_row(FILE *out, const struct brc_converge_report *r, int i)
 int brc_converge_csv(struct brc_context *ctx, const struct brc_converge_study *study,
                      const struct brc_converge_report *report)
 {
-    char path[PATH_SIZE], *text = NULL;
-    size_t size = 0;
+    struct brc_text_file file;
     const struct brc_result *seen = &study->results[study->observable];
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for converge.csv");
+    BRC_TRY(brc_text_file_begin(ctx, &file, study->order->dir, "converge.csv"));
+    FILE *out = file.out;
     fprintf(out,
             "model,axis,setting,role,runs [1],%s [%s],error [1],standard_error [1],"
             "one_specimen [1],steps [1],cpu_s [s],cheapest_1,cheapest_5,"
@@ -263,9 +256,5 @@ int brc_converge_csv(struct brc_context *ctx, const struct brc_converge_study *s
     for (int i = 0; i < study->n_models; i++)
         for (int k = 0; k < report[i].n; k++)
             put_csv_row(out, &report[i], k);
-    fclose(out);
-    snprintf(path, sizeof path, "%s/converge.csv", study->order->dir);
-    int code = brc_output_text(ctx, path, text);
-    free(text);
-    return code;
+    return brc_text_file_end(ctx, &file);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/runs/export.h"
 
+#include "common/base/text_file.h"
 #include "common/engine/fragments.h"
 #include "common/output/io_h5.h"
 #include "common/runs/case.h"
@@ -8,6 +9,7 @@
 #include "common/output/output.h"
 #include "common/output/checksum_header.h"
 #include "common/geometry/vec.h"
+#include "common/runs/case_files.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -70,7 +72,7 @@ struct target {
 
 /* The file out must not be there, nor where it is written first; what is read is never replaced:
  * the file and, where the case counts, those that it names. */
-static int check_out(struct brc_context *ctx, const struct brc_export_order *o,
+static int check_out(struct brc_context *ctx, const struct brc_export_options *o,
                      const struct brc_case *run_case)
 {
     char part[4096];
@@ -100,20 +102,14 @@ static int check_out(struct brc_context *ctx, const struct brc_export_order *o,
 
 static int write_to(struct brc_context *ctx, const char *path, const struct target *target)
 {
-    char *text = NULL;
-    size_t size = 0;
+    struct brc_text_file file;
     if (!path)
         return target->put(ctx, stdout, target->what);
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for %s", path);
-    int code = target->put(ctx, out, target->what);
-    if (fclose(out) != 0 && code == 0)
-        code = brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__, "out of memory for %s", path);
-    if (code == 0)
-        code = brc_output_text(ctx, path, text);
-    free(text);
-    return code;
+    BRC_TRY(brc_text_file_begin(ctx, &file, NULL, path));
+    int code = target->put(ctx, file.out, target->what);
+    if (code != 0)
+        brc_text_file_drop(&file);
+    return code != 0 ? code : brc_text_file_end(ctx, &file);
 }
 
 /* ---- tables -------------------------------------------------------------------------------- */
@@ -128,16 +124,15 @@ static int put_table(struct brc_context *ctx, FILE *out, const void *what)
 static int find_table(struct brc_context *ctx, struct brc_state *state, const char *name,
                       struct brc_state_part **found)
 {
-    char all[400] = "";
+    char all[BRC_NAMES_SIZE] = "";
     *found = NULL;
     for (int i = 0; i < state->n; i++) {
         struct brc_state_part *part = &state->part[i];
-        size_t used = strlen(all);
         if (!part->table || part->set.n == 0)
             continue;
         if (strcmp(part->path, name) == 0)
             *found = part;
-        snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", part->path);
+        brc_names_add(all, sizeof all, part->path);
     }
     if (!*found)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "no table '%.60s'; there are: %s", name, all);
@@ -145,7 +140,7 @@ static int find_table(struct brc_context *ctx, struct brc_state *state, const ch
 }
 
 /* Straight from the file: neither the case nor the files that it names are needed. */
-int brc_export_table(struct brc_context *ctx, const struct brc_export_order *order,
+int brc_export_table(struct brc_context *ctx, const struct brc_export_options *order,
                      const char *table)
 {
     const struct brc_model *model;
@@ -309,7 +304,7 @@ static int load_specimen(struct brc_context *ctx, const char *path, struct loade
     return brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen);
 }
 
-int brc_export_format(struct brc_context *ctx, const struct brc_export_order *order,
+int brc_export_format(struct brc_context *ctx, const struct brc_export_options *order,
                       const char *format)
 {
     struct loaded l;

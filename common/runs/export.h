@@ -9,17 +9,17 @@
 
 #include <stdio.h>
 
-struct brc_export_order {
+struct brc_export_options {
     const char *path; /* of a state, or for "tess" of a case file */
     const char *out;  /* file to write; NULL: standard output */
     bool is_forced;   /* replace the file out that is there, unless it is what is read */
 };
 
 /* A table of a state, by its name in the file ("curve", "pairs/points"). */
-int brc_export_table(struct brc_context *ctx, const struct brc_export_order *order,
+int brc_export_table(struct brc_context *ctx, const struct brc_export_options *order,
                      const char *table);
 /* "stl" or "tess". */
-int brc_export_format(struct brc_context *ctx, const struct brc_export_order *order,
+int brc_export_format(struct brc_context *ctx, const struct brc_export_options *order,
                       const char *format);
 
 /* Surfaces of the fragments, one solid each, closed: inner facets are left out, and a vertex of

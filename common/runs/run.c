@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/runs/run.h"
 
+#include "common/base/folders.h"
+#include "common/base/signals.h"
 #include "common/engine/blowup.h"
 #include "common/engine/fragments.h"
 #include "common/output/frames.h"
 #include "common/output/plot.h"
+#include "common/runs/case_keep.h"
+#include "common/runs/case_text.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { PATH_SIZE = 4096, DESCRIPTION_SIZE = 4096 };
+enum { DESCRIPTION_SIZE = 4096 };
 
 /* What a run counts beside its state; goes on when it is resumed. */
 #define RUN_COUNTS(SCALAR, VECTOR)                                                             \
@@ -39,7 +42,7 @@ static const struct brc_field count_fields[] = {RUN_COUNTS(BRC_FIELD, BRC_FIELD3
 
 struct run {
     struct brc_context *ctx;
-    const struct brc_run_order *order;
+    const struct brc_run_options *order;
     struct brc_sim sim;
     struct counts counts;
     struct brc_frames frames;
@@ -50,77 +53,13 @@ struct run {
     const char *ended_by;
 };
 
-/* ---- signals ------------------------------------------------------------------------------- */
-
-/* Signals that end a run: of the terminal, of batch systems, of a reader that has gone. */
-static const int stop_signal[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGUSR1, SIGUSR2, SIGXCPU};
-enum { N_STOP_SIGNALS = sizeof stop_signal / sizeof stop_signal[0] };
-
-/* They are blocked and looked for between steps, so that no global state is needed. What the parent
- * has told us to ignore (nohup) stays ignored. */
-static void stop_signals(sigset_t *set)
-{
-    sigemptyset(set);
-    for (int i = 0; i < N_STOP_SIGNALS; i++) {
-        struct sigaction now;
-        if (sigaction(stop_signal[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN)
-            sigaddset(set, stop_signal[i]);
-    }
-}
-
-static void leave(int number)
-{
-    static const char text[] =
-        "breccia: interrupted before the first step; nothing was saved, start again\n";
-    ssize_t n = write(STDERR_FILENO, text, sizeof text - 1);
-    (void)n, (void)number;
-    _exit(brc_error_exit_status(BRC_ERR_NOT_BEGUN));
-}
-
-void brc_run_leave_on_signals(void)
-{
-    for (int i = 0; i < N_STOP_SIGNALS; i++) {
-        struct sigaction now;
-        if (stop_signal[i] == SIGPIPE || sigaction(stop_signal[i], NULL, &now) != 0 ||
-            now.sa_handler == SIG_IGN)
-            continue;
-        now = (struct sigaction){.sa_handler = leave};
-        sigaction(stop_signal[i], &now, NULL);
-    }
-}
-
-void brc_run_hold_signals(void)
-{
-    sigset_t set;
-    stop_signals(&set);
-    sigprocmask(SIG_BLOCK, &set, NULL);
-}
-
-bool brc_run_is_stopped(void)
-{
-    sigset_t set, pending;
-    stop_signals(&set);
-    sigemptyset(&pending);
-    sigpending(&pending);
-    for (int number = 1; number < 32; number++)
-        if (sigismember(&set, number) == 1 && sigismember(&pending, number) == 1)
-            return true;
-    return false;
-}
-
 /* ---- folder -------------------------------------------------------------------------------- */
-
-static int in_folder(struct brc_context *ctx, const char *dir, const char *name,
-                     char path[PATH_SIZE])
-{
-    return brc_run_path(ctx, dir, name, path, PATH_SIZE);
-}
 
 /* The log is locked while the run lasts, so that no second run writes here. Its content stays. */
 static int open_log(struct run *r)
 {
-    char path[PATH_SIZE];
-    BRC_TRY(in_folder(r->ctx, r->order->dir, "log", path));
+    char path[BRC_PATH_SIZE];
+    BRC_TRY(brc_folder_path(r->ctx, r->order->dir, "log", path));
     r->log = fopen(path, "a");
     if (!r->log)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
@@ -135,7 +74,7 @@ static int open_log(struct run *r)
  */
 static int replace_old(struct run *r)
 {
-    const struct brc_run_order *o = r->order;
+    const struct brc_run_options *o = r->order;
     BRC_TRY(brc_run_keep_case(r->ctx, o->dir, o->run_case, r->case_text, true));
     BRC_TRY(brc_run_remove_results(r->ctx, o->dir));
     if (ftruncate(fileno(r->log), 0) != 0)
@@ -203,12 +142,12 @@ static void make_extra(struct run *r, struct extra *e)
 
 static int save(struct run *r)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     struct extra extra;
     take_times(r);
     make_extra(r, &extra);
     BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->order->dir, &extra.h5));
-    BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(brc_folder_path(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
     BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->order->dir));
     /* limits of a run that goes on may have changed: so does the case, with the state */
@@ -234,10 +173,10 @@ static int check_model(struct run *r, const char *path)
 
 static int load(struct run *r)
 {
-    char path[PATH_SIZE], *saved;
+    char path[BRC_PATH_SIZE], *saved;
     struct extra extra;
     make_extra(r, &extra);
-    BRC_TRY(in_folder(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(brc_folder_path(r->ctx, r->order->dir, "state.h5", path));
     BRC_TRY(check_model(r, path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
     int code = brc_case_same(r->ctx, saved, r->parameters);
@@ -296,7 +235,7 @@ static const char *ended_by(const struct brc_sim *sim)
         return sim->rig.strain >= sim->rig.params.strain_max ? "test.strain_max" : "test.stop_drop";
     if (sim->step >= sim->run.max_steps)
         return "run.max_steps";
-    return brc_run_is_stopped() ? "signal" : NULL;
+    return brc_signals_held() ? "signal" : NULL;
 }
 
 /* When a state is saved changes no bit of it. */
@@ -425,12 +364,9 @@ static int measure(const struct run *r, struct brc_summary *s)
 
 static int write_tables(struct run *r)
 {
-    char path[PATH_SIZE];
     const char *dir = r->order->dir;
-    BRC_TRY(in_folder(r->ctx, dir, "curve.csv", path));
-    BRC_TRY(brc_output_csv(r->ctx, path, &r->sim.rig.curve.table));
-    BRC_TRY(in_folder(r->ctx, dir, "events.csv", path));
-    return brc_output_csv(r->ctx, path, &r->sim.events.table);
+    BRC_TRY(brc_output_csv(r->ctx, dir, "curve.csv", &r->sim.rig.curve.table));
+    return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table);
 }
 
 static int draw(struct run *r)
@@ -451,11 +387,10 @@ static int draw(struct run *r)
 
 static int write_results(struct run *r, struct brc_summary *out)
 {
-    char path[PATH_SIZE], energy[512];
+    char energy[512];
     BRC_TRY(measure(r, out));
     BRC_TRY(write_tables(r));
-    BRC_TRY(in_folder(r->ctx, r->order->dir, "summary.json", path));
-    BRC_TRY(brc_output_summary(r->ctx, path, out));
+    BRC_TRY(brc_output_summary(r->ctx, r->order->dir, "summary.json", out));
     for (int i = 0; i < out->n_results; i++)
         if (out->results[i].note)
             note(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
@@ -485,7 +420,7 @@ static void note_header(struct run *r)
 
 static int check_folder(const struct run *r)
 {
-    const struct brc_run_order *o = r->order;
+    const struct brc_run_options *o = r->order;
     return brc_run_check_folder(r->ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
 }
 
@@ -505,23 +440,23 @@ static int close_log(struct run *r, int code)
 /* Everything that can be refused is refused before the folder is touched. */
 static int prepare(struct run *r)
 {
-    const struct brc_run_order *o = r->order;
+    const struct brc_run_options *o = r->order;
     BRC_TRY(check_folder(r));
     r->parameters = brc_case_text(r->ctx, o->run_case, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
     BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_case_params(o->run_case, o->model),
                            o->specimen, &o->run_case->test, &o->run_case->run));
-    if (brc_run_is_stopped())
+    if (brc_signals_held())
         BRC_FAIL(r->ctx, BRC_ERR_NOT_BEGUN,
                  "interrupted before the first step; nothing was saved, and %s is as it was",
                  o->dir);
-    BRC_TRY(brc_run_make_folder(r->ctx, o->dir));
+    BRC_TRY(brc_folder_make(r->ctx, o->dir));
     BRC_TRY(brc_case_keep(r->ctx, o->run_case, o->model, o->dir, &r->case_text));
     BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->run_case, r->case_text, o->is_resumed));
     BRC_TRY(open_log(r));
     BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
-    bool has_state = o->is_resumed && brc_run_has_file(o->dir, "state.h5");
+    bool has_state = o->is_resumed && brc_folder_has(o->dir, "state.h5");
     BRC_TRY(has_state ? load(r) : replace_old(r));
     note_header(r);
     if (has_state)
@@ -557,7 +492,7 @@ static int judge_energy(const struct run *r, const struct brc_summary *s)
     return 0;
 }
 
-int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out)
+int brc_run(struct brc_context *ctx, const struct brc_run_options *order, struct brc_summary *out)
 {
     struct run r = {.ctx = ctx, .order = order};
     brc_frames_init(&r.frames);

@@ -6,7 +6,7 @@
 #include "common/runs/case.h"
 #include "common/base/progress.h"
 
-struct brc_run_order {
+struct brc_run_options {
     const struct brc_case *run_case;
     const struct brc_model *model;
     const struct brc_specimen *specimen;
@@ -18,16 +18,11 @@ struct brc_run_order {
 };
 
 /* Runs to the end of the test. Writes to dir: case.yaml, log, state.h5, curve.csv, events.csv,
- * broken.csv, summary.json, and the plots. A signal that was held (brc_run_hold_signals) saves the
+ * broken.csv, summary.json, and the plots. A signal that was held (brc_signals_hold) saves the
  * state and ends in BRC_ERR_INTERRUPTED, before the first step in BRC_ERR_NOT_BEGUN; curves are
  * written after any failure of a started run. */
-int brc_run(struct brc_context *ctx, const struct brc_run_order *order, struct brc_summary *out);
+int brc_run(struct brc_context *ctx, const struct brc_run_options *order, struct brc_summary *out);
 
-/* dir/name in path; a longer one is BRC_ERR_INPUT. */
-int brc_run_path(struct brc_context *ctx, const char *dir, const char *name, char *path,
-                 size_t size);
-/* dir holds something of that name. */
-bool brc_run_has_file(const char *dir, const char *name);
 /* A run has been started in dir, by its log. */
 bool brc_run_has_begun(const char *dir);
 /* Fails when dir holds what the run would replace (results, a file of the same name of the user's
@@ -54,15 +49,4 @@ int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc
  * then. */
 int brc_run_remove_results(struct brc_context *ctx, const char *dir);
 int brc_run_remove(struct brc_context *ctx, const char *dir);
-/* From now on SIGINT, SIGTERM, SIGHUP, and the warnings of batch systems, SIGUSR1, SIGUSR2 and
- * SIGXCPU, end the process at once, in words and with the status of an interruption: there is
- * nothing to save yet. */
-void brc_run_leave_on_signals(void);
-/* From now on those signals and a lost reader wait: each run of the process saves its state and
- * ends after the present step. */
-void brc_run_hold_signals(void);
-bool brc_run_is_stopped(void);
-/* Makes a folder and those above it. */
-int brc_run_make_folder(struct brc_context *ctx, const char *path);
-
 #endif

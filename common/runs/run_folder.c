@@ -4,7 +4,9 @@
 #include "common/runs/run.h"
 
 #include "common/output/frames.h"
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
+#include "common/base/text_file.h"
+#include "common/runs/case_files.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -14,67 +16,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { PATH_SIZE = 4096 };
-
 /* What a run writes beside case.yaml, log and frames. */
 static const char *const result_files[] = {
     "summary.json", "state.h5",   "curve.csv", "events.csv",  "broken.csv", "curves.png",
     "curves.gp",    "cracks.png", "cracks.gp", "cracks.plot", "gnuplot.log"};
 enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
-
-int brc_run_path(struct brc_context *ctx, const char *dir, const char *name, char *path,
-                 size_t size)
-{
-    if (snprintf(path, size, "%s/%s", dir, name) >= (int)size)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", dir);
-    return 0;
-}
-
-int brc_run_make_folder(struct brc_context *ctx, const char *path)
-{
-    char part[PATH_SIZE];
-    BRC_TRY(brc_run_path(ctx, path, "", part, sizeof part));
-    for (char *c = part + 1; *c; c++) {
-        if (*c != '/')
-            continue;
-        *c = '\0';
-        struct stat status;
-        if (mkdir(part, 0777) != 0 && errno != EEXIST)
-            BRC_FAIL(ctx, BRC_ERR_IO, "cannot make the folder %s: %s", part, strerror(errno));
-        if (stat(part, &status) == 0 && !S_ISDIR(status.st_mode))
-            BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a folder; choose another with -o", part);
-        *c = '/';
-    }
-    return 0;
-}
-
-/* The folder, or the nearest one above it that is there, must take files. */
-static int check_writable(struct brc_context *ctx, const char *dir)
-{
-    char path[PATH_SIZE];
-    struct stat status;
-    BRC_TRY(brc_run_path(ctx, dir, "", path, sizeof path));
-    while (stat(path, &status) != 0) {
-        char *slash = strrchr(path, '/');
-        if (slash == path || !slash)
-            snprintf(path, sizeof path, slash ? "/" : ".");
-        else
-            *slash = '\0';
-    }
-    if (!S_ISDIR(status.st_mode))
-        BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a folder; choose another with -o", path);
-    if (access(path, W_OK | X_OK) != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write to the folder %s: %s; choose another with -o", path,
-                 strerror(errno));
-    return 0;
-}
-
-bool brc_run_has_file(const char *dir, const char *name)
-{
-    char path[PATH_SIZE];
-    struct stat status;
-    return snprintf(path, sizeof path, "%s/%s", dir, name) < PATH_SIZE && lstat(path, &status) == 0;
-}
 
 /* NULL when it is not there, or is not a plain file. */
 static FILE *open_plain(const char *path)
@@ -89,8 +35,9 @@ static FILE *open_plain(const char *path)
  * an empty one, which is worth nothing to anyone. */
 static bool read_log(const char *dir, bool *is_empty)
 {
-    char path[PATH_SIZE], begin[sizeof "breccia "] = "";
-    FILE *log = snprintf(path, sizeof path, "%s/log", dir) < PATH_SIZE ? open_plain(path) : NULL;
+    char path[BRC_PATH_SIZE], begin[sizeof "breccia "] = "";
+    FILE *log =
+        snprintf(path, sizeof path, "%s/log", dir) < BRC_PATH_SIZE ? open_plain(path) : NULL;
     size_t n = log ? fread(begin, 1, sizeof begin - 1, log) : 0;
     if (log)
         fclose(log);
@@ -118,16 +65,16 @@ static int check_absent(struct brc_context *ctx, const char *dir, const char *na
 {
     char part[256];
     snprintf(part, sizeof part, "%s.part", name);
-    if (brc_run_has_file(dir, name))
+    if (brc_folder_has(dir, name))
         return fail_occupied(ctx, dir, name);
-    return brc_run_has_file(dir, part) ? fail_occupied(ctx, dir, part) : 0;
+    return brc_folder_has(dir, part) ? fail_occupied(ctx, dir, part) : 0;
 }
 
 static int check_input(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *name)
 {
-    char path[PATH_SIZE];
-    BRC_TRY(brc_run_path(ctx, dir, name, path, sizeof path));
+    char path[BRC_PATH_SIZE];
+    BRC_TRY(brc_folder_path(ctx, dir, name, path));
     if (brc_case_is_input(run_case, path))
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
@@ -153,7 +100,7 @@ static int check_new(struct brc_context *ctx, const char *dir)
     bool is_empty;
     BRC_TRY(check_absent(ctx, dir, "case.yaml"));
     read_log(dir, &is_empty);
-    if (brc_run_has_file(dir, "log") && !is_empty)
+    if (brc_folder_has(dir, "log") && !is_empty)
         return fail_occupied(ctx, dir, "log");
     return brc_frames_find(dir, frame, sizeof frame) ? fail_occupied(ctx, dir, frame) : 0;
 }
@@ -164,8 +111,8 @@ static int check_resumed(struct brc_context *ctx, const char *dir)
 {
     if (!brc_run_has_begun(dir))
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s holds no run to resume; leave out --resume", dir);
-    for (int i = 0; i < N_RESULT_FILES && !brc_run_has_file(dir, "state.h5"); i++)
-        if (brc_run_has_file(dir, result_files[i]))
+    for (int i = 0; i < N_RESULT_FILES && !brc_folder_has(dir, "state.h5"); i++)
+        if (brc_folder_has(dir, result_files[i]))
             BRC_FAIL(
                 ctx, BRC_ERR_INPUT,
                 "%s holds results (%s) but no state.h5 to go on from; start anew with --force, "
@@ -178,7 +125,7 @@ static int check_resumed(struct brc_context *ctx, const char *dir)
 int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                          bool is_resumed, bool is_forced)
 {
-    BRC_TRY(check_writable(ctx, dir));
+    BRC_TRY(brc_folder_check_writable(ctx, dir));
     BRC_TRY(check_input(ctx, dir, run_case, "log"));
     BRC_TRY(brc_run_check_own(ctx, dir, run_case, result_files, N_RESULT_FILES,
                               is_resumed || is_forced));
@@ -210,7 +157,7 @@ uint64_t brc_run_case_digest(const char *text)
 /* The log tells the digest of each case that the run has kept, before it is written. */
 static bool is_in_log(const char *dir, const char *path)
 {
-    char log[PATH_SIZE], line[1024], digest[32];
+    char log[BRC_PATH_SIZE], line[1024], digest[32];
     char *text = NULL;
     size_t size = 0;
     bool is_found = false;
@@ -222,7 +169,7 @@ static bool is_in_log(const char *dir, const char *path)
     free(text);
     if (file)
         fclose(file);
-    file = snprintf(log, sizeof log, "%s/log", dir) < PATH_SIZE ? open_plain(log) : NULL;
+    file = snprintf(log, sizeof log, "%s/log", dir) < BRC_PATH_SIZE ? open_plain(log) : NULL;
     while (file && !is_found && fgets(line, sizeof line, file))
         is_found = strncmp(line, "case.yaml: ", 11) == 0 && strstr(line, digest);
     if (file)
@@ -233,8 +180,8 @@ static bool is_in_log(const char *dir, const char *path)
 int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *text, bool is_resumed)
 {
-    char path[PATH_SIZE];
-    BRC_TRY(brc_run_path(ctx, dir, "case.yaml", path, sizeof path));
+    char path[BRC_PATH_SIZE];
+    BRC_TRY(brc_folder_path(ctx, dir, "case.yaml", path));
     if (holds(path, text) || (is_resumed && is_in_log(dir, path)))
         return 0;
     if (brc_case_is_input(run_case, path))
@@ -242,7 +189,7 @@ int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct br
                  "%s is the case that is read, and the options of this run would change it; choose "
                  "another folder with -o",
                  path);
-    if (is_resumed && brc_run_has_file(dir, "case.yaml"))
+    if (is_resumed && brc_folder_has(dir, "case.yaml"))
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s is not the case that the run has kept there; move it away, then resume", path);
     return 0;
@@ -251,31 +198,24 @@ int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct br
 int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *text, bool is_new)
 {
-    char path[PATH_SIZE];
-    BRC_TRY(brc_run_path(ctx, dir, "case.yaml", path, sizeof path));
+    char path[BRC_PATH_SIZE];
+    BRC_TRY(brc_folder_path(ctx, dir, "case.yaml", path));
     bool may_stay = !is_new || brc_case_is_input(run_case, path);
-    return may_stay && holds(path, text) ? 0 : brc_output_text(ctx, path, text);
+    return may_stay && holds(path, text) ? 0 : brc_text_file_write(ctx, NULL, path, text);
 }
 
 int brc_run_remove_results(struct brc_context *ctx, const char *dir)
 {
-    char path[PATH_SIZE];
-    for (int i = 0; i < N_RESULT_FILES; i++) {
-        BRC_TRY(brc_run_path(ctx, dir, result_files[i], path, sizeof path));
-        if (unlink(path) != 0 && errno != ENOENT)
-            BRC_FAIL(ctx, BRC_ERR_IO, "cannot remove %s: %s", path, strerror(errno));
-    }
+    for (int i = 0; i < N_RESULT_FILES; i++)
+        BRC_TRY(brc_folder_remove(ctx, dir, result_files[i]));
     return brc_frames_remove(ctx, dir);
 }
 
 int brc_run_remove(struct brc_context *ctx, const char *dir)
 {
-    char path[PATH_SIZE];
     BRC_TRY(brc_run_remove_results(ctx, dir));
-    for (int i = 0; i < 2; i++) {
-        BRC_TRY(brc_run_path(ctx, dir, i == 0 ? "case.yaml" : "log", path, sizeof path));
-        unlink(path);
-    }
+    BRC_TRY(brc_folder_remove(ctx, dir, "case.yaml"));
+    BRC_TRY(brc_folder_remove(ctx, dir, "log"));
     rmdir(dir); /* stays when it holds what is not the run's */
     return 0;
 }

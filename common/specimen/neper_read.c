@@ -2,7 +2,7 @@
 /* From what a tessellation file holds to cells and their domain. */
 #include "common/specimen/cell_complex.h"
 #include "common/geometry/hilbert.h"
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
 #include "common/specimen/neper.h"
 #include "common/specimen/neper_file.h"
 #include "common/geometry/vec.h"

@@ -2,17 +2,16 @@
 #include "common/specimen/packing_cache.h"
 
 #include "common/base/table.h"
-#include "common/input/input_file.h"
+#include "common/base/folders.h"
+#include "common/base/input_file.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* raise when the packing's rules change */
-enum { CACHE_VERSION = 2, PATH_SIZE = 1024 };
+enum { CACHE_VERSION = 2 };
 static const char MAGIC[8] = "brcpack";
 
 struct header {
@@ -39,36 +38,31 @@ static uint64_t content_hash(const struct brc_seeds *s)
 }
 
 /* Folder of the cache, made when create is set; false when there is none. */
-static bool cache_folder(char folder[PATH_SIZE], bool create)
+static bool cache_folder(char folder[BRC_PATH_SIZE], bool create)
 {
     const char *own = getenv("BRECCIA_CACHE"), *xdg = getenv("XDG_CACHE_HOME");
     const char *home = getenv("HOME");
     int length = -1;
     if (own && own[0])
-        length = snprintf(folder, PATH_SIZE, "%s", own);
+        length = snprintf(folder, BRC_PATH_SIZE, "%s", own);
     else if (xdg && xdg[0])
-        length = snprintf(folder, PATH_SIZE, "%s/breccia", xdg);
+        length = snprintf(folder, BRC_PATH_SIZE, "%s/breccia", xdg);
     else if (home && home[0])
-        length = snprintf(folder, PATH_SIZE, "%s/.cache/breccia", home);
-    if (length < 0 || length >= PATH_SIZE)
+        length = snprintf(folder, BRC_PATH_SIZE, "%s/.cache/breccia", home);
+    if (length < 0 || length >= BRC_PATH_SIZE)
         return false;
-    for (char *at = folder + 1; create && *at; at++) {
-        if (*at != '/')
-            continue;
-        *at = '\0';
-        mkdir(folder, 0777);
-        *at = '/';
-    }
-    return !create || mkdir(folder, 0777) == 0 || errno == EEXIST;
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    return !create || brc_folder_make(&quiet, folder) == 0;
 }
 
-static bool cache_path(char path[PATH_SIZE], uint64_t key, bool create)
+static bool cache_path(char path[BRC_PATH_SIZE], uint64_t key, bool create)
 {
-    char folder[PATH_SIZE];
+    char folder[BRC_PATH_SIZE];
     if (!cache_folder(folder, create))
         return false;
-    int length = snprintf(path, PATH_SIZE, "%s/packing-%016llx", folder, (unsigned long long)key);
-    return length > 0 && length < PATH_SIZE;
+    int length =
+        snprintf(path, BRC_PATH_SIZE, "%s/packing-%016llx", folder, (unsigned long long)key);
+    return length > 0 && length < BRC_PATH_SIZE;
 }
 
 static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct brc_seeds *out)
@@ -91,7 +85,7 @@ static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct
 bool brc_packing_cache_load(struct brc_context *ctx, const struct brc_specimen_params *p,
                             const struct brc_convex *domain, struct brc_seeds *out)
 {
-    char path[PATH_SIZE];
+    char path[BRC_PATH_SIZE];
     uint64_t key = cache_key(p, domain);
     const struct brc_input in = {.path = path, .largest = BRC_INPUT_LARGEST, .is_plain = true};
     struct brc_context quiet = BRC_CONTEXT_INIT;
@@ -120,13 +114,13 @@ static bool write_seeds(const char *path, uint64_t key, const struct brc_seeds *
 void brc_packing_cache_save(struct brc_context *ctx, const struct brc_specimen_params *p,
                             const struct brc_convex *domain, const struct brc_seeds *seeds)
 {
-    char path[PATH_SIZE], temporary[PATH_SIZE];
+    char path[BRC_PATH_SIZE], temporary[BRC_PATH_SIZE];
     uint64_t key = cache_key(p, domain);
     if (!p->cache)
         return;
     bool saved = cache_path(path, key, true);
-    int length = saved ? snprintf(temporary, PATH_SIZE, "%s.%ld", path, (long)getpid()) : -1;
-    saved = saved && length > 0 && length < PATH_SIZE && write_seeds(temporary, key, seeds) &&
+    int length = saved ? snprintf(temporary, BRC_PATH_SIZE, "%s.%ld", path, (long)getpid()) : -1;
+    saved = saved && length > 0 && length < BRC_PATH_SIZE && write_seeds(temporary, key, seeds) &&
             rename(temporary, path) == 0;
     if (saved)
         return;

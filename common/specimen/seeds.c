@@ -2,11 +2,13 @@
 #include "common/specimen/seeds.h"
 
 #include "common/geometry/grid.h"
+#include "common/geometry/hilbert.h"
 #include "common/input/numbers.h"
 #include "common/geometry/vec.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Seeds nearer than this part of the grain size (of equal cubes) are one grain cut in two by a bond
  * that is a thousand times too stiff. */
@@ -155,5 +157,25 @@ int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *
     brc_numbers_free(&rows);
     if (code != 0)
         brc_seeds_free(out);
+    return code;
+}
+
+int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s)
+{
+    size_t *order = brc_alloc(ctx, s->n, sizeof *order);
+    double(*x)[3] = brc_alloc(ctx, s->n, sizeof *x);
+    double *radius = brc_alloc(ctx, s->n, sizeof *radius);
+    int code = order && x && radius ? brc_hilbert_order(ctx, s->x, s->n, order) : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < s->n; i++) {
+        brc_copy(x[i], s->x[order[i]]);
+        radius[i] = s->radius ? s->radius[order[i]] : 0;
+    }
+    if (code == 0)
+        memcpy(s->x, x, s->n * sizeof *x);
+    if (code == 0 && s->radius)
+        memcpy(s->radius, radius, s->n * sizeof *radius);
+    free(order);
+    free(x);
+    free(radius);
     return code;
 }

@@ -4,7 +4,8 @@
 #ifndef BRC_SEEDS_H
 #define BRC_SEEDS_H
 
-#include "common/specimen/specimen.h"
+#include "common/geometry/convex.h"
+#include "common/specimen/specimen_params.h"
 
 struct brc_seeds {
     size_t n;

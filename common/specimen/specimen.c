@@ -121,26 +121,6 @@ static int make_domain(struct brc_context *ctx, const struct brc_specimen_params
     return BRC_ERR_INTERNAL;
 }
 
-int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s)
-{
-    size_t *order = brc_alloc(ctx, s->n, sizeof *order);
-    double(*x)[3] = brc_alloc(ctx, s->n, sizeof *x);
-    double *radius = brc_alloc(ctx, s->n, sizeof *radius);
-    int code = order && x && radius ? brc_hilbert_order(ctx, s->x, s->n, order) : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < s->n; i++) {
-        brc_copy(x[i], s->x[order[i]]);
-        radius[i] = s->radius ? s->radius[order[i]] : 0;
-    }
-    if (code == 0)
-        memcpy(s->x, x, s->n * sizeof *x);
-    if (code == 0 && s->radius)
-        memcpy(s->radius, radius, s->n * sizeof *radius);
-    free(order);
-    free(x);
-    free(radius);
-    return code;
-}
-
 static int make_seeds(struct brc_context *ctx, struct brc_specimen *s, struct brc_seeds *seeds)
 {
     const struct brc_specimen_params *p = &s->params;

@@ -39,7 +39,7 @@ EOF
 # bad input: what is allowed, nothing made
 expect 2 "no axis 'stp'; there are: step, loading, rate, grains, " \
     "$breccia" converge case.yaml --axes loading,stp
-expect 2 "measures no 'strenth'; there are: E, nu, " "$breccia" converge case.yaml --observable strenth
+expect 2 "does not measure 'strenth'; there are: E, nu, " "$breccia" converge case.yaml --observable strenth
 expect 2 "--seeds takes a whole number from 1 to 64, not '0'" "$breccia" converge case.yaml --seeds 0
 expect 2 "--seeds takes a whole number" "$breccia" converge case.yaml --seeds 3x
 expect 2 "--refine takes a power of 2 from 2 to 256, not 3" "$breccia" converge case.yaml --refine 3

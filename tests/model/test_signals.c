@@ -3,6 +3,7 @@
  * folder is made or touched, no pictures are drawn. */
 #include "common/runs/compare.h"
 #include "common/runs/run.h"
+#include "common/base/signals.h"
 #include "tests/near.h"
 
 #include <signal.h>
@@ -39,9 +40,9 @@ static void close_scene(struct scene *s)
 /* A signal that is held now; taken back by forget. */
 static void signal_waits(int number)
 {
-    brc_run_hold_signals();
+    brc_signals_hold();
     assert_int_equal(raise(number), 0);
-    assert_true(brc_run_is_stopped());
+    assert_true(brc_signals_held());
 }
 
 static void forget(int number)
@@ -51,7 +52,7 @@ static void forget(int number)
     sigemptyset(&set);
     sigaddset(&set, number);
     assert_int_equal(sigwait(&set, &got), 0);
-    assert_false(brc_run_is_stopped());
+    assert_false(brc_signals_held());
 }
 
 static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
@@ -65,7 +66,7 @@ static void test_run(void **state)
     const char *label = "vgcm";
     (void)state;
     open_scene(&s);
-    struct brc_run_order order = {
+    struct brc_run_options order = {
         .run_case = &s.run_case, .specimen = &s.specimen, .dir = s.dir, .progress = &progress};
     CHECK_OK(&s.ctx, brc_case_model(&s.ctx, "vgcm", &order.model));
     for (int i = 0; i < N_SIGNALS; i++) {
@@ -91,7 +92,7 @@ static void test_compare(void **state)
     struct scene s;
     (void)state;
     open_scene(&s);
-    const struct brc_compare_order order = {
+    const struct brc_compare_options order = {
         .run_case = &s.run_case, .specimen = &s.specimen, .dir = s.dir, .is_quiet = true};
     signal_waits(SIGUSR1);
     CHECK_FAILS(&s.ctx, brc_compare(&s.ctx, &order), BRC_ERR_NOT_BEGUN, "nothing was saved");

@@ -118,7 +118,7 @@ static void test_export(void **state)
     char saved[64], path[80];
     snprintf(saved, sizeof saved, "/tmp/breccia-test-%ld-tables.h5", (long)getpid());
     snprintf(path, sizeof path, "%s.csv", saved);
-    const struct brc_export_order order = {.path = saved, .out = path, .is_forced = true};
+    const struct brc_export_options order = {.path = saved, .out = path, .is_forced = true};
     fixture_grid(f, 3, 3, 3, 0.01, 0.5);
     for (int i = 0; i < brc_registry_count(); i++) {
         struct brc_state list;

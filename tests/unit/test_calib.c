@@ -472,7 +472,7 @@ static void objective_is_checked(void **state)
                 "fake.b is a variable twice");
     bad[2] = (struct calib_variable){"count", 1, 2};
     CHECK_FAILS(&ctx, calib_objective_check(&ctx, &o, list), BRC_ERR_INPUT,
-                "fake.count is no quantity of the model");
+                "fake.count is not a quantity of the model");
     bad[2] = (struct calib_variable){"cuont", 1, 2};
     CHECK_FAILS(&ctx, calib_objective_check(&ctx, &o, list), BRC_ERR_INPUT,
                 "; did you mean 'count'?");

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A case as a whole: keys that others make meaningless, keys that bound each other, sections. */
 #include "common/runs/applies.h"
+#include "common/runs/case_keep.h"
+#include "common/runs/case_text.h"
 #include "tests/near.h"
 
 #include <stdio.h>

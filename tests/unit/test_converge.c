@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The statistics of a ladder on numbers whose answer is known by hand, and the judgement of a study
  * that is made up: reference, uncertainty, cheapest settings. */
-#include "common/runs/converge.h"
+#include "common/runs/converge_axes.h"
+#include "common/runs/converge_table.h"
 #include "tests/near.h"
 
 #include <stdio.h>
@@ -131,10 +132,10 @@ static void test_judge(void **state)
     static struct brc_converge_setting settings[16];
     static struct brc_converge_report report;
     static struct brc_case run_case;
-    const struct brc_converge_order order = {.run_case = &run_case, .seeds = N_SEEDS};
+    const struct brc_converge_options order = {.run_case = &run_case, .seeds = N_SEEDS};
     study.order = &order;
     make_study(&study, settings);
-    brc_converge_judge(&study, 0, &report);
+    brc_converge_report_make(&study, 0, &report);
     CHECK_NEAR(report.reference, 150e6, 0, 1e-12);
     CHECK_NEAR(report.scatter, sqrt(0.5) / 1.5, 0, 1e-12);
     CHECK_NEAR(report.step.mean, 0.01, 0, 1e-12);
@@ -154,14 +155,14 @@ static void test_judge(void **state)
     assert_true(brc_converge_is_shown(&report, 6, 0.07));
     /* a rung that lost a run has no error, and spoils what is coarser */
     snprintf(settings[5].run[1].ended_by, sizeof settings[5].run[1].ended_by, "failure");
-    brc_converge_judge(&study, 0, &report);
+    brc_converge_report_make(&study, 0, &report);
     assert_true(isnan(report.row[5].error.mean));
     assert_int_equal(report.row[5].n_good, 1);
     assert_int_equal(report.cheapest[1], 4);
     /* and so does one whose load was still rising at the end */
     snprintf(settings[5].run[1].ended_by, sizeof settings[5].run[1].ended_by, "test.strain_max");
     settings[5].run[1].result[1] = NAN;
-    brc_converge_judge(&study, 0, &report);
+    brc_converge_report_make(&study, 0, &report);
     assert_true(isnan(report.row[5].error.mean));
     assert_int_equal(report.row[5].n_good, 1);
 }
@@ -173,12 +174,12 @@ static void test_print(void **state)
     static struct brc_converge_setting settings[16];
     static struct brc_converge_report report;
     static struct brc_case run_case;
-    const struct brc_converge_order order = {.run_case = &run_case, .seeds = N_SEEDS};
+    const struct brc_converge_options order = {.run_case = &run_case, .seeds = N_SEEDS};
     char *text = NULL;
     size_t size = 0;
     study.order = &order;
     make_study(&study, settings);
-    brc_converge_judge(&study, 0, &report);
+    brc_converge_report_make(&study, 0, &report);
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
     brc_converge_print(out, &study, &report);

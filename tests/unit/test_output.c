@@ -118,7 +118,7 @@ static void test_summary_is_json(void **state)
     struct brc_summary s = sample();
     char path[64];
     make_path(path, "summary.json");
-    CHECK_OK(&ctx, brc_output_summary(&ctx, path, &s));
+    CHECK_OK(&ctx, brc_output_summary(&ctx, NULL, path, &s));
     char *text = read_all(path);
     const char *end = json_value(text);
     assert_non_null(end);
@@ -144,7 +144,7 @@ static void test_empty_results(void **state)
     char path[64];
     s.n_results = 0;
     make_path(path, "empty.json");
-    CHECK_OK(&ctx, brc_output_summary(&ctx, path, &s));
+    CHECK_OK(&ctx, brc_output_summary(&ctx, NULL, path, &s));
     char *text = read_all(path);
     assert_non_null(json_value(text));
     free(text);
@@ -156,7 +156,7 @@ static void test_unwritable(void **state)
     (void)state;
     struct brc_context ctx = BRC_CONTEXT_INIT;
     struct brc_summary s = sample();
-    CHECK_FAILS(&ctx, brc_output_summary(&ctx, "/nowhere/summary.json", &s), BRC_ERR_IO,
+    CHECK_FAILS(&ctx, brc_output_summary(&ctx, "/nowhere", "summary.json", &s), BRC_ERR_IO,
                 "/nowhere/summary.json");
 }
 
@@ -186,7 +186,7 @@ static void test_csv(void **state)
     rows.x[1][0] = 0.1;
     rows.x[1][2] = 1e-300;
     rows.mode[1] = 255;
-    CHECK_OK(&ctx, brc_output_csv(&ctx, path, &table));
+    CHECK_OK(&ctx, brc_output_csv(&ctx, NULL, path, &table));
     char *text = read_all(path);
     assert_string_equal(text, "step [1],x_1 [m],x_2 [m],x_3 [m],mode [1]\n"
                               "0,0,0,0,0\n"

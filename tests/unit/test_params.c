@@ -220,11 +220,12 @@ static void hints_are_near(void **state)
         brc_params_set(&ctx, sample_list, &v, "s", "interaction", "polyhedra", "f:1"), 0);
     assert_null(strstr(ctx.message, "did you mean"));
     brc_error_clear(&ctx);
-    assert_int_equal(brc_params_distance("kitten", "sitting"), 3);
-    assert_int_equal(brc_params_distance("", "abc"), 3);
-    assert_int_equal(brc_params_distance("E_Bar", "e_bar"), 0);
-    assert_string_equal(brc_params_nearest(sample_list, "lenght"), "length");
-    assert_null(brc_params_nearest(sample_list, "zzzzz"));
+    assert_int_equal(brc_names_distance("kitten", "sitting"), 3);
+    assert_int_equal(brc_names_distance("", "abc"), 3);
+    assert_int_equal(brc_names_distance("E_Bar", "e_bar"), 0);
+    char hint[BRC_HINT_SIZE];
+    assert_string_equal(brc_params_hint(sample_list, "lenght", hint), "; did you mean 'length'?");
+    assert_string_equal(brc_params_hint(sample_list, "zzzzz", hint), "");
     assert_ptr_equal(brc_params_find(sample_list, "rate"), &sample_params[2]);
     assert_null(brc_params_find(sample_list, "rat"));
 }

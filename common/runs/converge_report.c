@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/runs/converge.h"
+#include "common/runs/converge_report.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,8 +78,8 @@ static void collect_rungs(struct brc_converge_report *r)
     }
 }
 
-void brc_converge_judge(const struct brc_converge_study *study, int model,
-                        struct brc_converge_report *out)
+void brc_converge_report_make(const struct brc_converge_study *study, int model,
+                              struct brc_converge_report *out)
 {
     const struct brc_converge_model *m = &study->model[model];
     const struct brc_converge_setting *s = m->setting;
@@ -98,4 +98,10 @@ void brc_converge_judge(const struct brc_converge_study *study, int model,
         int best = brc_converge_cheapest(out->rung, out->n_rungs, brc_converge_within[k]);
         out->cheapest[k] = best < 0 ? -1 : out->rung_row[best];
     }
+}
+
+bool brc_converge_is_shown(const struct brc_converge_report *r, int i, double error)
+{
+    const struct brc_converge_error *e = &r->row[i].error;
+    return fabs(e->mean) + hypot(e->deviation, r->uncertainty) <= error;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/input/input_file.h"
+#include "common/base/input_file.h"
 
 #include <errno.h>
 #include <stdlib.h>

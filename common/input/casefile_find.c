@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where things stand in a case: the place for a message, a section, the entry that gives a key its
+ * value. All other files of the reader stand on this one, so it may not call them. */
+#include "common/input/casefile.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { LONGEST_PATH = 200 }; /* in messages; of longer ones the end is told */
+
+const char *brc_casefile_where(const struct brc_casefile *c, int line, bool is_override,
+                               char where[BRC_CASEFILE_WHERE_SIZE])
+{
+    int n = (int)strlen(c->path);
+    bool is_long = n > LONGEST_PATH;
+    const char *path = is_long ? c->path + n - LONGEST_PATH : c->path;
+    if (is_override)
+        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "--set");
+    else if (line > 0)
+        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "%s%s:%d", is_long ? "..." : "", path, line);
+    else
+        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "%s%s", is_long ? "..." : "", path);
+    return where;
+}
+
+const struct brc_casefile_place *brc_casefile_find_section(const struct brc_casefile *c,
+                                                           const char *name)
+{
+    for (size_t i = 0; i < c->n_sections; i++)
+        if (strcmp(c->sections[i].name, name) == 0)
+            return &c->sections[i];
+    return NULL;
+}
+
+const char *brc_casefile_key(const struct brc_casefile_entry *e, struct brc_param_list list)
+{
+    bool is_short =
+        *e->parent && !brc_params_find(list, e->key) && brc_params_find(list, e->parent);
+    return is_short ? e->parent : e->key;
+}
+
+const struct brc_casefile_entry *brc_casefile_find_entry(const struct brc_casefile *c,
+                                                         const char *section, const char *key,
+                                                         struct brc_param_list list)
+{
+    for (size_t i = c->n; i > 0; i--) { /* the last one holds */
+        const struct brc_casefile_entry *e = &c->entries[i - 1];
+        if (strcmp(e->section, section) == 0 && strcmp(brc_casefile_key(e, list), key) == 0)
+            return e;
+    }
+    return NULL;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/runs/case_text.h"
+
+#include "common/runs/case_files.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE_SIZE = 512 };
+
+static char *add_section(struct brc_context *ctx, char *text, const char *section,
+                         struct brc_param_list list, const void *values)
+{
+    char line[LINE_SIZE], value[BRC_TEXT_SIZE];
+    size_t used = text ? strlen(text) : 0;
+    char *grown = brc_realloc(ctx, text, used + (size_t)list.n * LINE_SIZE + 1, 1);
+    if (!grown) {
+        free(text);
+        return NULL;
+    }
+    grown[used] = '\0';
+    for (int i = 0; i < list.n; i++) {
+        if (brc_case_names_file(section, &list.params[i]))
+            continue;
+        brc_params_text(&list.params[i], values, value, sizeof value);
+        int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
+        memcpy(grown + used, line, (size_t)n + 1);
+        used += (size_t)n;
+    }
+    return grown;
+}
+
+char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
+                    const struct brc_model *model)
+{
+    /* an automatic rate as a number: it hangs on strain_max, which may change when a run goes on */
+    struct brc_test_params test = run_case->test;
+    test.rate = brc_rig_start_rate(&test);
+    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &run_case->specimen);
+    if (text)
+        text = add_section(ctx, text, "test", brc_test_param_list, &test);
+    if (text)
+        text = add_section(ctx, text, "run", brc_run_param_list, &run_case->run);
+    if (text)
+        text = add_section(ctx, text, model->name, model->params, brc_case_params(run_case, model));
+    return text;
+}
+
+/* Keys that may differ between the parts of one run. */
+static bool may_change(const char *line, size_t key_length)
+{
+    static const char *const keys[] = {"test.strain_max", "test.stop_drop",       "run.max_steps",
+                                       "run.checkpoint",  "run.checkpoint_steps", "run.simd",
+                                       "specimen.cache"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (strlen(keys[i]) == key_length && strncmp(line, keys[i], key_length) == 0)
+            return true;
+    return false;
+}
+
+int brc_case_same(struct brc_context *ctx, const char *saved, const char *now)
+{
+    while (*saved && *now) {
+        size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
+        bool equal = a == b && strncmp(saved, now, a) == 0;
+        bool is_allowed = may_change(saved, strcspn(saved, " ")) && may_change(now, key);
+        if (!equal && !is_allowed)
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "the saved state was made with '%.*s', the case says '%.*s'; resume with "
+                     "unchanged parameters (--set included%s) or start anew with --force",
+                     (int)a, saved, (int)b, now,
+                     strncmp(now, "test.rate ", 10) == 0
+                         ? "; an automatic rate follows test.strain_max: give the first one"
+                         : "");
+        saved += a + (saved[a] != '\0');
+        now += b + (now[b] != '\0');
+    }
+    if (*saved || *now)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "the saved state has other parameters than this version; "
+                 "resume with the version that wrote it");
+    return 0;
+}

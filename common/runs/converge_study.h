@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the parts of `breccia converge` share: settings with their runs, and rows of the table. Data
+ * alone; converge_axes makes the settings, converge runs them, converge_report judges the results,
+ * converge_table and converge_plot show them, and none of these knows the next. */
+#ifndef BRC_CONVERGE_STUDY_H
+#define BRC_CONVERGE_STUDY_H
+
+#include "common/runs/converge.h"
+#include "common/runs/converge_stats.h"
+
+enum brc_converge_role {
+    BRC_CONVERGE_CASE,      /* as written */
+    BRC_CONVERGE_REFERENCE, /* it, and those that tell its uncertainty */
+    BRC_CONVERGE_LADDER,    /* an error that falls with cost */
+    BRC_CONVERGE_CHOICE,    /* a choice of the model: a difference, no error */
+    BRC_CONVERGE_GRAINS     /* other specimens */
+};
+
+/* A run of a setting on one specimen, as the record keeps it. */
+struct brc_converge_run {
+    uint64_t key; /* of all parameters of the run */
+    bool is_done;
+    char ended_by[64];
+    int64_t steps;
+    double dt, cpu_s;
+    double result[BRC_MAX_RESULTS];
+};
+
+struct brc_converge_setting {
+    char axis[BRC_CASEFILE_KEY_SIZE];
+    enum brc_converge_role role;
+    char label[128]; /* the key that the axis is about, and its value; no comma */
+    char text[512];  /* overrides "section.key=value", one a line */
+    double fineness; /* on its ladder; the case has 1 */
+    double weight;   /* expected cost over that of the case */
+    struct brc_converge_run run[BRC_CONVERGE_MAX_SEEDS];
+};
+
+/* The settings of a model. The first four are the case, the reference, and the reference with its
+ * loading, and its loading and step, one rung coarser. */
+enum {
+    BRC_CONVERGE_AT_CASE,
+    BRC_CONVERGE_AT_REFERENCE,
+    BRC_CONVERGE_AT_STEP,
+    BRC_CONVERGE_AT_LOADING,
+    BRC_CONVERGE_N_FIXED
+};
+struct brc_converge_model {
+    const struct brc_model *model;
+    struct brc_test_params test; /* with its automatic rates filled in */
+    uint64_t specimen; /* hash of the case's own: what files that it names hold is a part of it */
+    double mean_rate;  /* 1/s, of the case up to the peak, first specimen; 0: not run yet */
+    int n;
+    struct brc_converge_setting *setting; /* BRC_CONVERGE_MAX_SETTINGS */
+};
+
+struct brc_converge_axes {
+    int n;
+    char name[BRC_CONVERGE_MAX_AXES][BRC_CASEFILE_KEY_SIZE];
+};
+
+/* What all runs measure: names and units of the results. */
+struct brc_converge_study {
+    const struct brc_converge_options *order;
+    struct brc_result results[BRC_MAX_RESULTS]; /* values are of no use */
+    int n_results, observable;
+    int n_models;
+    struct brc_converge_model model[BRC_CONVERGE_MAX_MODELS];
+};
+
+/* A setting over its specimens. */
+struct brc_converge_row {
+    const struct brc_converge_setting *setting;
+    double value;                    /* mean of the observable */
+    struct brc_converge_error error; /* choices and grains: difference to the case */
+    double steps, cpu_s;             /* medians */
+    int n_good;                      /* runs that reached the end and measured it */
+    bool is_case;                    /* a rung that is the case as written */
+};
+
+/* A model's rows, in the order of its settings. */
+struct brc_converge_report {
+    const struct brc_converge_model *model;
+    struct brc_converge_error loading, step; /* parts of the reference's uncertainty */
+    double reference, uncertainty, scatter;  /* the latter two relative */
+    int n;
+    struct brc_converge_row row[BRC_CONVERGE_MAX_SETTINGS];
+    struct brc_converge_rung rung[BRC_CONVERGE_MAX_SETTINGS]; /* of the ladders, with CPU time */
+    int rung_row[BRC_CONVERGE_MAX_SETTINGS], n_rungs;
+    int cheapest[2]; /* rows, within 1 % and 5 %; -1: none */
+};
+
+#endif
