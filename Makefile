@@ -6,6 +6,8 @@ CFG   ?= release
 BUILD := build$(if $(filter release,$(CFG)),,/$(CFG))
 JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 
+empty :=
+space := $(empty) $(empty)
 .DEFAULT_GOAL := all
 .SUFFIXES:
 .DELETE_ON_ERROR:
@@ -18,6 +20,8 @@ endif
 # --- sources ---------------------------------------------------------------------------------------
 MODELS       := $(filter-out common calib tests cases docs results,$(patsubst %/model.c,%,$(sort $(wildcard */model.c))))
 LIB_SOURCES  := $(sort $(wildcard common/*/*.c common/*/*.cpp calib/*.c $(addsuffix /*.c,$(MODELS))))
+# tests: what each file defines as brc_rig_<name>
+RIGS         := $(sort $(patsubst brc_rig_%,%,$(shell grep -hoE "^const struct brc_rig_type brc_rig_[a-z_]+" common/rigs/*.c | grep -oE "brc_rig_[a-z_]+$$")))
 # the slow ones first, so that the cores stay busy to the end
 TEST_FOLDERS := $(addprefix tests/,golden determinism converge model cli unit)
 TEST_SOURCES := $(foreach d,$(TEST_FOLDERS),$(sort $(wildcard $d/test_*.c)))
@@ -100,12 +104,15 @@ endef
 FORCE:
 $(BUILD)/registry_list.h: FORCE
 	$(call write_fact,'/* made by make from the folders with a model.c */' $(patsubst %,'BRC_MODEL(brc_model_%)',$(MODELS)))
+$(BUILD)/rig_list.h: FORCE
+	$(call write_fact,'/* made by make from the tests in common/rigs */' '#define BRC_RIG_NAMES "$(subst $(space),|,$(RIGS))"' \
+		'#define BRC_RIGS $(patsubst %,BRC_RIG(brc_rig_%),$(RIGS))')
 $(BUILD)/flags: FORCE
 	$(call write_fact,'$(CC) $(CXX) $(CFLAGS_ALL) $(CXXFLAGS_ALL) $(LINK_FLAGS)')
 $(BUILD)/sources: FORCE
 	$(call write_fact,$(SONAME) $(LIB_SOURCES) $(AID_SOURCES))
 
-$(BUILD)/obj/%.c.o: %.c $(BUILD)/flags | $(BUILD)/registry_list.h
+$(BUILD)/obj/%.c.o: %.c $(BUILD)/flags | $(BUILD)/registry_list.h $(BUILD)/rig_list.h
 	@mkdir -p $(@D)
 	@echo "cc   $<"
 	@$(CC) $(CFLAGS_ALL) -MMD -MP -c $< -o $@
@@ -114,6 +121,7 @@ $(BUILD)/obj/%.cpp.o: %.cpp $(BUILD)/flags
 	@echo "c++  $<"
 	@$(CXX) $(CXXFLAGS_ALL) -MMD -MP -c $< -o $@
 $(BUILD)/obj/common/engine/registry.c.o: $(BUILD)/registry_list.h
+$(BUILD)/obj/common/rigs/rigs.c.o: $(BUILD)/rig_list.h
 # loops that are compiled for each instruction set
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_release := -O3 -g
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_bare := -O3 -g -DBRC_BARE
@@ -246,7 +254,7 @@ build/lint/%.tidy: $(BUILD)/obj/%.o .clang-tidy
 	@clang-tidy --quiet $(if $(filter %.cpp,$*),--checks=$(TIDY_CXX)) $* -- $(if $(filter %.cpp,$*),-std=c++17,-std=c17) -D_POSIX_C_SOURCE=200809L \
 		-I. -I$(BUILD) $(DEPS_CFLAGS) 2>$@.log || { cat $@.log; exit 1; }
 	@touch $@
-build/lint/%.alone: % $(BUILD)/flags | $(BUILD)/registry_list.h
+build/lint/%.alone: % $(BUILD)/flags | $(BUILD)/registry_list.h $(BUILD)/rig_list.h
 	@mkdir -p $(@D); $(CC) $(CFLAGS_ALL) -Wno-unused-macros -MMD -MP -MT $@ -MF $@.d -fsyntax-only -x c -include $< /dev/null \
 		&& touch $@
 -include $(patsubst %,build/lint/%.alone.d,$(LINT_HEADERS))

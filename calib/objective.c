@@ -1,17 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calib/objective.h"
 
+#include "common/rigs/rigs.h"
+
 #include <math.h>
 #include <string.h>
 
-static const char *const test_names[] = {"compression", "tension", "brazilian"};
-enum { N_TESTS = sizeof test_names / sizeof test_names[0] };
+enum { MAX_TESTS = 16 };
+
+/* Number of the test that measures a target, -1: none does. */
+static int test_of(const struct calib_target *t)
+{
+    const char *name = calib_quantities[t->quantity].test;
+    return name ? brc_rigs_find(name) : -1;
+}
 
 size_t calib_objective_size(const struct calib_objective *o)
 {
     size_t n = 0;
     for (size_t i = 0; i < o->targets->n; i++)
-        n += calib_quantities[o->targets->target[i].quantity].test >= 0;
+        n += test_of(&o->targets->target[i]) >= 0;
     return n;
 }
 
@@ -71,7 +79,7 @@ static int check_bounds(struct brc_context *ctx, const struct calib_objective *o
 static int run_test(struct brc_context *ctx, const struct calib_objective *o, const double *x,
                     int test, struct brc_summary *summary)
 {
-    struct calib_trial trial = {o->model, (enum brc_test)test, o->n, o->variables, x};
+    struct calib_trial trial = {o->model, test, o->n, o->variables, x};
     memset(summary, 0, sizeof *summary);
     return o->runner.run(ctx, o->runner.user, &trial, summary);
 }
@@ -87,7 +95,7 @@ static int add_residual(struct brc_context *ctx, const struct calib_objective *o
             ctx, BRC_ERR_INPUT,
             "calibration: the %s test of %s gave no %s%s%s; run its case alone and look at the "
             "curve",
-            test_names[q->test], o->model, q->result, measured && measured->note ? ": " : "",
+            q->test, o->model, q->result, measured && measured->note ? ": " : "",
             measured && measured->note ? measured->note : "");
     struct calib_residual *r = &out->residual[out->n++];
     r->quantity = t->quantity;
@@ -106,7 +114,7 @@ static int add_residual(struct brc_context *ctx, const struct calib_objective *o
 static bool is_asked(const struct calib_objective *o, int test)
 {
     for (size_t i = 0; i < o->targets->n; i++)
-        if (calib_quantities[o->targets->target[i].quantity].test == test)
+        if (test_of(&o->targets->target[i]) == test)
             return true;
     return false;
 }
@@ -114,10 +122,10 @@ static bool is_asked(const struct calib_objective *o, int test)
 int calib_objective_evaluate(struct brc_context *ctx, const struct calib_objective *o,
                              const double *x, struct calib_evaluation *out)
 {
-    struct brc_summary summary[N_TESTS];
+    struct brc_summary summary[MAX_TESTS];
     memset(out, 0, sizeof *out);
     BRC_TRY(check_bounds(ctx, o, x));
-    for (int test = 0; test < N_TESTS; test++) {
+    for (int test = 0; test < brc_rigs_count() && test < MAX_TESTS; test++) {
         if (!is_asked(o, test))
             continue;
         BRC_TRY(run_test(ctx, o, x, test, &summary[test]));
@@ -126,7 +134,7 @@ int calib_objective_evaluate(struct brc_context *ctx, const struct calib_objecti
     }
     for (size_t i = 0; i < o->targets->n; i++) {
         const struct calib_target *t = &o->targets->target[i];
-        int test = calib_quantities[t->quantity].test;
+        int test = test_of(t);
         if (test >= 0)
             BRC_TRY(add_residual(ctx, o, t, &summary[test], out));
     }

@@ -16,7 +16,7 @@ struct calib_variable {
 /* One test to run: the case of that test with these values in place of its own. */
 struct calib_trial {
     const char *model;
-    enum brc_test test;
+    int test; /* number of it, see rigs.h */
     size_t n;
     const struct calib_variable *variables;
     const double *x; /* SI */

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calib/simulate.h"
+#include "common/rigs/rigs.h"
 #include "common/runs/run.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum { ASSIGNMENT_SIZE = 256, DIR_SIZE = 4096 };
-
-static const char *const test_names[CALIB_N_TESTS] = {"compression", "tension", "brazilian"};
 
 int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, size_t i,
                      struct brc_param_list list, char *buffer, size_t size)
@@ -41,13 +40,11 @@ static int read_case(struct brc_context *ctx, const struct calib_simulator *s,
     }
     overrides[trial->n] = "output.plots=off";
     BRC_TRY(brc_case_read(ctx, run_case, s->path[trial->test], overrides, (int)trial->n + 1));
-    if (run_case->test.kind != (int)trial->test) {
-        char kind[32];
-        brc_params_choice(brc_params_find(brc_test_param_list, "kind"), &run_case->test, kind,
-                          sizeof kind);
+    if (run_case->test.kind != trial->test) {
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "calibration: %s is given as the %s test, but its test.kind is %s",
-                 s->path[trial->test], test_names[trial->test], kind);
+                 s->path[trial->test], brc_rigs_at(trial->test)->name,
+                 brc_rigs_at(run_case->test.kind)->name);
     }
     return 0;
 }
@@ -58,8 +55,8 @@ static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
 {
     char dir[DIR_SIZE];
     struct brc_progress quiet;
-    int test = (int)trial->test;
-    if (snprintf(dir, sizeof dir, "%s/%s", s->dir, test_names[test]) >= DIR_SIZE)
+    int test = trial->test;
+    if (snprintf(dir, sizeof dir, "%s/%s", s->dir, brc_rigs_at(test)->name) >= DIR_SIZE)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", s->dir);
     if (!s->has_specimen[test]) {
         BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, &s->specimen[test]));
@@ -88,7 +85,7 @@ int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "calibration: a target needs the %s test, but no case file is "
                  "given for it",
-                 test_names[trial->test]);
+                 brc_rigs_at(trial->test)->name);
     BRC_TRY(brc_case_model(ctx, trial->model, &model));
     int code = read_case(ctx, s, trial, model, &run_case);
     if (code == 0)
@@ -99,7 +96,7 @@ int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial
 
 void calib_simulator_free(struct calib_simulator *s)
 {
-    for (int i = 0; i < CALIB_N_TESTS; i++) {
+    for (int i = 0; i < CALIB_MAX_TESTS; i++) {
         if (s->has_specimen[i])
             brc_specimen_free(&s->specimen[i]);
         s->has_specimen[i] = false;

@@ -6,15 +6,15 @@
 #include "calib/objective.h"
 #include "common/specimen/specimen.h"
 
-enum { CALIB_N_TESTS = 3, CALIB_MAX_VARIABLES = 32 };
+enum { CALIB_MAX_TESTS = 16, CALIB_MAX_VARIABLES = 32 };
 
 /* Zero all but path and dir before the first run. */
 struct calib_simulator {
-    const char *path[CALIB_N_TESTS]; /* case file by enum brc_test; NULL: no such test */
+    const char *path[CALIB_MAX_TESTS]; /* case file by the number of its test; NULL: no such test */
     const char *dir; /* results of the latest runs, one folder a test; without results before */
-    struct brc_specimen specimen[CALIB_N_TESTS];
-    bool has_specimen[CALIB_N_TESTS];
-    bool has_run[CALIB_N_TESTS]; /* its folder holds results of this simulator */
+    struct brc_specimen specimen[CALIB_MAX_TESTS];
+    bool has_specimen[CALIB_MAX_TESTS];
+    bool has_run[CALIB_MAX_TESTS]; /* its folder holds results of this simulator */
 };
 
 /* To be used as calib_runner.run with a struct calib_simulator as user. */

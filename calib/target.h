@@ -4,25 +4,25 @@
 #ifndef CALIB_TARGET_H
 #define CALIB_TARGET_H
 
-#include "common/engine/rig.h"
+#include "common/input/params.h"
 
-/* Code, section in the file, SI unit, range, test that measures it (-1: none), result in the
+/* Code, section in the file, SI unit, range, test that measures it (NULL: none), result in the
  * summary of that test, meaning. */
-#define CALIB_QUANTITIES(X)                                                                       \
-    X(CALIB_YOUNGS_MODULUS, "youngs_modulus", "Pa", "(0, inf)", BRC_TEST_COMPRESSION, "E",        \
-      "Young's modulus in unconfined compression")                                                \
-    X(CALIB_POISSON_RATIO, "poisson_ratio", "1", "(-1, 0.5)", BRC_TEST_COMPRESSION, "nu",         \
-      "Poisson's ratio in unconfined compression")                                                \
-    X(CALIB_STRENGTH, "strength", "Pa", "(0, inf)", BRC_TEST_COMPRESSION, "strength",             \
-      "unconfined compressive strength")                                                          \
-    X(CALIB_TENSILE_STRENGTH, "tensile_strength", "Pa", "(0, inf)", BRC_TEST_TENSION, "strength", \
-      "direct tensile strength")                                                                  \
-    X(CALIB_BRAZILIAN_STRENGTH, "brazilian_strength", "Pa", "(0, inf)", BRC_TEST_BRAZILIAN,       \
-      "strength", "Brazilian (indirect tensile) strength")                                        \
-    X(CALIB_COHESION, "cohesion", "Pa", "(0, inf)", -1, "", "cohesion of the Mohr-Coulomb line")  \
-    X(CALIB_FRICTION_ANGLE, "friction_angle", "rad", "[0, 1.5707963267948966)", -1, "",           \
-      "angle of the Mohr-Coulomb line")                                                           \
-    X(CALIB_DENSITY, "density", "kg/m3", "(0, inf)", -1, "", "bulk density")
+#define CALIB_QUANTITIES(X)                                                                        \
+    X(CALIB_YOUNGS_MODULUS, "youngs_modulus", "Pa", "(0, inf)", "compression", "E",                \
+      "Young's modulus in unconfined compression")                                                 \
+    X(CALIB_POISSON_RATIO, "poisson_ratio", "1", "(-1, 0.5)", "compression", "nu",                 \
+      "Poisson's ratio in unconfined compression")                                                 \
+    X(CALIB_STRENGTH, "strength", "Pa", "(0, inf)", "compression", "strength",                     \
+      "unconfined compressive strength")                                                           \
+    X(CALIB_TENSILE_STRENGTH, "tensile_strength", "Pa", "(0, inf)", "tension", "strength",         \
+      "direct tensile strength")                                                                   \
+    X(CALIB_BRAZILIAN_STRENGTH, "brazilian_strength", "Pa", "(0, inf)", "brazilian", "strength",   \
+      "Brazilian (indirect tensile) strength")                                                     \
+    X(CALIB_COHESION, "cohesion", "Pa", "(0, inf)", NULL, "", "cohesion of the Mohr-Coulomb line") \
+    X(CALIB_FRICTION_ANGLE, "friction_angle", "rad", "[0, 1.5707963267948966)", NULL, "",          \
+      "angle of the Mohr-Coulomb line")                                                            \
+    X(CALIB_DENSITY, "density", "kg/m3", "(0, inf)", NULL, "", "bulk density")
 
 enum calib_quantity_code {
 #define CALIB_QUANTITY_ENUM(code, name, unit, range, test, result, meaning) code,
@@ -33,7 +33,7 @@ enum calib_quantity_code {
 
 struct calib_quantity {
     const char *name, *unit, *range;
-    int test; /* enum brc_test, -1: no test measures it */
+    const char *test; /* NULL: no test measures it */
     const char *result, *meaning;
 };
 extern const struct calib_quantity calib_quantities[CALIB_N_QUANTITIES];

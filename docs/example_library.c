@@ -12,11 +12,12 @@ static int run(struct brc_context *ctx, struct brc_case *run_case, const struct 
 {
     struct brc_result result[BRC_MAX_RESULTS];
     BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, specimen));
-    BRC_TRY(brc_sim_create(ctx, sim, model, brc_case_params(run_case, model), specimen,
-                           &run_case->test, &run_case->run));
-    while (!brc_rig_done(sim))
+    struct brc_test test = brc_case_test(run_case);
+    BRC_TRY(brc_sim_create(ctx, sim, model, brc_case_params(run_case, model), specimen, &test,
+                           &run_case->run));
+    while (!brc_rigs_done(sim))
         BRC_TRY(brc_sim_step(sim));
-    int n = brc_rig_results(sim, result);
+    int n = brc_rigs_results(sim, result);
     for (int i = 0; i < n; i++)
         printf("%s = %.17g %s\n", result[i].name, result[i].value, result[i].unit);
     return 0;

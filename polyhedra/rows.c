@@ -69,7 +69,7 @@ static bool on_platen(const struct brc_sim *sim, const struct brc_platen *p, siz
     double d[3];
     brc_sub(d, f->centroid[facet], sim->bodies.x[p->body]);
     return brc_dot(f->normal[facet], p->n) < -1 + PLATEN_TOLERANCE &&
-           fabs(brc_dot(d, p->n)) < PLATEN_TOLERANCE * sim->rig.length;
+           fabs(brc_dot(d, p->n)) < PLATEN_TOLERANCE * sim->rig.length[sim->rig.axis];
 }
 
 /* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the

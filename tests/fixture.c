@@ -195,7 +195,8 @@ void fixture_sim(struct fixture *f, const struct brc_model *model, const char *s
     fixture_set(f, model->params, params, settings);
     fixture_set(f, brc_test_param_list, &t, test);
     fixture_set(f, brc_run_param_list, &r, run);
-    int code = brc_sim_create(&f->ctx, &f->sim, model, params, &f->specimen, &t, &r);
+    const struct brc_test rig = brc_rigs_test(&t, NULL);
+    int code = brc_sim_create(&f->ctx, &f->sim, model, params, &f->specimen, &rig, &r);
     free(params);
     CHECK_OK(&f->ctx, code);
     f->has_sim = true;
@@ -209,8 +210,9 @@ void fixture_case(struct fixture *f, const struct brc_model *model, const char *
     CHECK_OK(&f->ctx, brc_case_read(&f->ctx, &run_case, path, overrides, n));
     CHECK_OK(&f->ctx, brc_specimen_create(&f->ctx, &run_case.specimen, &f->specimen));
     f->has_specimen = true;
+    const struct brc_test test = brc_case_test(&run_case);
     int code = brc_sim_create(&f->ctx, &f->sim, model, brc_case_params(&run_case, model),
-                              &f->specimen, &run_case.test, &run_case.run);
+                              &f->specimen, &test, &run_case.run);
     brc_case_free(&run_case);
     CHECK_OK(&f->ctx, code);
     f->has_sim = true;

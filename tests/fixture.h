@@ -4,6 +4,9 @@
 #ifndef BRC_TESTS_FIXTURE_H
 #define BRC_TESTS_FIXTURE_H
 
+#include "common/rigs/curve.h"
+#include "common/rigs/loading.h"
+#include "common/rigs/rigs.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
 #include "tests/near.h"

@@ -45,8 +45,8 @@ static void set(struct brc_param_list list, void *values, const char *key, const
 
 static int start(struct brc_context *ctx, struct brc_sim *sim)
 {
-    return brc_sim_create(ctx, sim, scene.model, scene.params, &scene.specimen, &scene.test,
-                          &scene.run);
+    const struct brc_test test = brc_rigs_test(&scene.test, NULL);
+    return brc_sim_create(ctx, sim, scene.model, scene.params, &scene.specimen, &test, &scene.run);
 }
 
 static const struct brc_h5_text texts[] = {{"parameters", "specimen.seed = 1\nrun.dt = 0 s\n"}};

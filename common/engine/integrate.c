@@ -109,8 +109,8 @@ static void set_mass(struct brc_sim *sim, size_t i, double mass, double inertia)
     double part[2] = {b->mass[i] < mass ? b->mass[i] / mass : 1,
                       b->inertia[i][0] < inertia ? b->inertia[i][0] / inertia : 1};
     double dv[3], dw[3], v[3], field[3] = {0, 0, 0};
-    if (is_beginning(sim))
-        brc_rig_field(sim, i, field);
+    if (is_beginning(sim) && sim->rig.type->field)
+        sim->rig.type->field(sim, i, field);
     brc_sub(dv, b->v[i], field);
     brc_scale(dv, dv, 1 - part[0]);
     brc_scale(dw, b->w[i], 1 - part[1]);

@@ -59,11 +59,12 @@ int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_
                 free(list);
             list = grown;
             if (list)
-                list[used++] = (struct brc_facing){.cell = f->cell[i][0],
-                                                   .body = p->body,
-                                                   .facet = (int32_t)i,
-                                                   .is_on = cosine > 1 - ON_PLATEN &&
-                                                            fabs(h) < ON_PLATEN * sim->rig.length};
+                list[used++] = (struct brc_facing){
+                    .cell = f->cell[i][0],
+                    .body = p->body,
+                    .facet = (int32_t)i,
+                    .is_on = cosine > 1 - ON_PLATEN &&
+                             fabs(h) < ON_PLATEN * sim->rig.length[sim->rig.axis]};
         }
     }
     if (!list)
@@ -72,4 +73,27 @@ int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_
     *out = list;
     *n = used;
     return 0;
+}
+
+static double force_of(const struct brc_sim *sim, const struct brc_platen *p)
+{
+    return -brc_dot(sim->bodies.f[p->body], p->n);
+}
+
+void brc_platens_measure(struct brc_sim *sim)
+{
+    for (int i = 0; i < sim->rig.n_platens; i++) {
+        struct brc_platen *p = &sim->rig.platen[i];
+        double force = force_of(sim, p);
+        /* trapezoid rule of ledger.h; the platen moves along n alone */
+        sim->ledger.boundary +=
+            0.5 * (p->force + force) * brc_dot(sim->bodies.v[p->body], p->n) * sim->dt;
+        p->force = force;
+    }
+}
+
+void brc_platens_restore(struct brc_sim *sim)
+{
+    for (int i = 0; i < sim->rig.n_platens; i++)
+        sim->rig.platen[i].force = force_of(sim, &sim->rig.platen[i]);
 }

@@ -42,6 +42,11 @@ enum { BRC_MAX_PLATENS = 6 };
 bool brc_platen_height(const struct brc_platen *p, const double at[3], const double x[3], double *h,
                        double n[3]);
 
+/* After the forces of a step: force and work of each platen. */
+void brc_platens_measure(struct brc_sim *sim);
+/* Forces of the platens, after a loaded state has replaced bodies. */
+void brc_platens_restore(struct brc_sim *sim);
+
 /* A boundary facet that faces a platen, within 30 degrees. */
 struct brc_facing {
     int32_t cell, body; /* of the grain, of the platen */

@@ -1,52 +1,49 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Test rigs: platens, loading, and the measures of stress and strain. docs/measures.md says how
- * each value is measured. Compression is positive in all reports. */
+/* A test is one const struct of this type, filled in common/rigs/<name>.c and named brc_rig_<name>;
+ * the Makefile lists them. The engine calls its operations and knows no test; docs/add-a-test.md
+ * walks through one. docs/measures.md says how each value is measured. Compression is positive in
+ * all reports. */
 #ifndef BRC_RIG_H
 #define BRC_RIG_H
 
+#include "common/base/table.h"
 #include "common/engine/platens.h"
 #include "common/input/params.h"
 
-enum brc_test { BRC_TEST_COMPRESSION, BRC_TEST_TENSION, BRC_TEST_BRAZILIAN, BRC_TEST_NONE };
 enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
 
+/* Keys that tests share; each test names those that it uses (`kind=*`). */
 #define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                              \
-    CHOICE(kind, "compression|tension|brazilian|none", "compression",                            \
-           "compression and tension along z, Brazilian along y; none: no platens")               \
+    CHOICE(kind, BRC_RIG_NAMES, "compression", "see `breccia tests`")                            \
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                \
            "adaptive: fast while the specimen is elastic, slow while it breaks; fixed: at rate", \
-           "kind=compression|tension|brazilian")                                                 \
+           "kind=*")                                                                             \
     REAL(rate, "1/s", "0 1/s", "[0, inf)",                                                       \
          "fixed loading: strain rate; adaptive: the first one; 0: strain_max / 1e5 a second, "   \
          "strain_max x target x 0.005; "                                                         \
          "in the quasi-static regime one step is one second",                                    \
-         "kind=compression|tension|brazilian")                                                   \
+         "kind=*")                                                                               \
     REAL(target, "1", "0.003", "(0, 1)",                                                         \
          "adaptive: strain a step, over the strain at which damage began",                       \
-         "kind=compression|tension|brazilian, loading=adaptive")                                 \
+         "kind=*, loading=adaptive")                                                             \
     REAL(rate_min, "1/s", "0 1/s", "[0, inf)", "adaptive: smallest strain rate",                 \
-         "kind=compression|tension|brazilian, loading=adaptive")                                 \
+         "kind=*, loading=adaptive")                                                             \
     REAL(rate_max, "1/s", "1e-3 1/s", "(0, inf)", "adaptive: largest strain rate",               \
-         "kind=compression|tension|brazilian, loading=adaptive")                                 \
-    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain",              \
-         "kind=compression|tension|brazilian")                                                   \
+         "kind=*, loading=adaptive")                                                             \
+    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain", "kind=*")    \
     REAL(stop_drop, "1", "0.5", "[0, 1)",                                                        \
          "the test ends when the load has fallen to this part of "                               \
          "its peak; 0: never",                                                                   \
-         "kind=compression|tension|brazilian")                                                   \
-    REAL(friction, "1", "0", "[0, 10]", "friction coefficient of the platens",                   \
-         "kind=compression|brazilian")                                                           \
+         "kind=*")                                                                               \
+    REAL(friction, "1", "0", "[0, 10]", "friction coefficient of the platens", "kind=*")         \
     CHOICE(grip, "axial|full", "axial",                                                          \
-           "tension: platens hold only the axial motion of the end grains, or all of it",        \
-           "kind=tension")                                                                       \
+           "platens hold only the axial motion of the end grains, or all of it", "kind=*")       \
     REAL(gauge, "1", "0.6", "(0, 1]", "middle part of the specimen where strain is measured",    \
-         "kind=compression|tension|brazilian")                                                   \
-    REAL(plate_width, "m", "0 m", "[0, inf)", "Brazilian: width of the plates; 0: unlimited",    \
-         "kind=brazilian")                                                                       \
+         "kind=*")                                                                               \
+    REAL(plate_width, "m", "0 m", "[0, inf)", "width of the plates; 0: unlimited", "kind=*")     \
     REAL(modulus_low, "1", "0.05", "[0, 1)", "moduli: least squares from this part of the peak", \
-         "kind=compression|tension")                                                             \
-    REAL(modulus_high, "1", "0.15", "(0, 1]", "moduli: up to this part of the peak",             \
-         "kind=compression|tension")                                                             \
+         "kind=*")                                                                               \
+    REAL(modulus_high, "1", "0.15", "(0, 1]", "moduli: up to this part of the peak", "kind=*")   \
     INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")
 
 struct brc_test_params {
@@ -69,50 +66,126 @@ extern const struct brc_param_list brc_test_param_list;
     SCALAR(double, residual, BRC_STATE, "1", "energy residual")                                    \
     SCALAR(int64_t, broken, BRC_STATE, "1", "events so far")
 
+/* A value that a test measures; declared by the test, known before any run. */
+struct brc_quantity {
+    const char *name, *unit, *meaning;
+};
+/* What came of it. */
+struct brc_measured {
+    double value;     /* NAN: not measured */
+    const char *note; /* why it was not measured; static, NULL where it was */
+};
 struct brc_result {
     const char *name;
-    double value; /* NAN: not measured */
+    double value;
     const char *unit;
-    const char *note; /* why it was not measured; static, NULL where it was */
+    const char *note;
 };
 enum { BRC_MAX_RESULTS = 24 };
 
-/* A curve without a row. */
-void brc_rig_start_curve(struct brc_sim *sim);
-/* Judges the keys together; brc_rig_create does so too. */
-int brc_rig_check(struct brc_context *ctx, const struct brc_test_params *test);
-/* Number of platens of a test. */
-int brc_rig_platens(const struct brc_test_params *test);
-/* The rate at which a test starts [1/s]: its own, or the automatic one. */
-double brc_rig_start_rate(const struct brc_test_params *test);
-/* Places the platen bodies at the specimen's ends and gives them and the grains the
- * velocity field of a uniform strain at the starting rate. Called once, when bodies have
- * their places. */
-int brc_rig_create(struct brc_sim *sim, const struct brc_test_params *test);
-/* Velocity [m/s] of a grain in the field of a uniform strain at the present rate, about the middle
- * of the specimen; needs platens. */
-void brc_rig_field(const struct brc_sim *sim, size_t grain, double v[3]);
-void brc_rig_free(struct brc_sim *sim);
-/* After the forces of a step: platen forces, boundary work, strain, loading rate. Platens that
- * meet are an error. */
-int brc_rig_step(struct brc_sim *sim);
-/* At the end of a step: a row of the curve every sample_steps. */
-int brc_rig_sample(struct brc_sim *sim);
-/* The test has reached its end: strain_max, or the load has fallen to stop_drop of its
- * peak. */
-bool brc_rig_done(const struct brc_sim *sim);
-/* Steps until strain_max at the rate of the loading's present stage, for "time left, at most":
- * HUGE_VAL while adaptive loading has not met damage, as all hangs on where it begins, and without
- * platens. It falls from then on; brakes for avalanches are left out. */
-double brc_rig_steps_left(const struct brc_sim *sim);
-/* The values measured so far; returns how many. What was not measured has a note: strength and all
- * that hangs on the peak before the load has fallen from it, moduli without a gauge or without two
- * rows. A value that is not finite and has no note is the result of a computation that failed.
- * docs/measures.md says how each is measured. */
-int brc_rig_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS]);
-/* Largest unbalanced ratio of the rows up to the peak that carry a tenth of it or more. */
-double brc_rig_unbalanced_max(const struct brc_sim *sim);
-/* After a loaded state has replaced bodies, curve and scalars. */
-void brc_rig_restore(struct brc_sim *sim);
+/* Sides of a core that is loaded along its axis. Those of a disc, which a Brazilian test needs
+ * under its platens (specimen.c), would make polyhedra a third stiffer: a side cuts more corners
+ * into the outer facets, and each corner is a spring. */
+enum { BRC_CORE_SIDES = 64 };
+
+/* How the pictures of a test are drawn. */
+struct brc_rig_view {
+    bool is_from_above;  /* of cracks: along z; else from the side */
+    const char *strain;  /* column of the curve that is drawn as strain; NULL: none */
+    const char *lateral; /* and the one drawn dashed; NULL: none */
+    const char *strain_label, *stress_label;
+};
+
+struct brc_rig_type {
+    const char *name, *meaning;   /* test.kind, and what `breccia tests` prints */
+    const char *keys;             /* shared keys that it uses, with spaces between */
+    struct brc_param_list params; /* keys of its own, in a section of its name; none: no section */
+    struct brc_fieldset state;    /* one row of scalars that are saved with the run */
+    struct brc_fieldset columns;  /* its own columns of the curve */
+    const struct brc_quantity *quantities;
+    int n_quantities;
+    int n_platens;
+    int sides; /* of the polygon that stands for a circle, unless the case says; 0: as for any */
+    const struct brc_rig_view *view;
+
+    /* --- required --- */
+
+    /* Lengths, areas, platens and the velocities at the start. Called once, when bodies have their
+     * places. */
+    int (*place)(struct brc_sim *sim);
+    /* After the forces of a step, when those of the platens and their work are known: loads,
+     * strains, the velocity of each platen. */
+    int (*drive)(struct brc_sim *sim);
+    /* At the end of a step: rows of the curve. */
+    int (*measure)(struct brc_sim *sim);
+    /* The values of its quantities so far, in their order. */
+    void (*results)(const struct brc_sim *sim, struct brc_measured *out);
+
+    /* --- optional, with a default --- */
+
+    /* Judges keys together. Default: accepts. */
+    int (*check)(struct brc_context *ctx, const struct brc_test_params *test, const void *own);
+    /* Velocity of a grain in the field that the test imposes now. Default: at rest. */
+    void (*field)(const struct brc_sim *sim, size_t grain, double v[3]);
+    /* The test has reached its end. Default: strain_max, or the load has fallen to stop_drop. */
+    bool (*is_done)(const struct brc_sim *sim);
+};
+
+/* A test as a case asks for it. */
+struct brc_test {
+    const struct brc_rig_type *type;
+    const struct brc_test_params *params;
+    const void *own; /* filled parameters of the type's own section; NULL where it has none */
+};
+
+/* Scalars that belong to the state, declared once for saving and hashing. */
+#define BRC_RIG_SCALARS(X, RENAMED)                                                             \
+    X(double, rate, "s-1", "strain rate")                                                       \
+    X(double, change, "1", "adaptive: change of log rate a step")                               \
+    X(double, strain_onset, "1", "adaptive: where damage began; 0: not yet")                    \
+    X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")                     \
+    RENAMED(int64_t, is_post_peak, is_lost, "1", "adaptive: the load has fallen from its peak") \
+    RENAMED(int64_t, is_steady, is_settled, "1", "the start has been left behind")              \
+    X(double, strain, "1", "platen strain, in the sense of the test")                           \
+    X(double, force, "N", "mean platen force now, in the sense of the test")                    \
+    X(double, force_sum, "N", "sum of force since the last row of the curve")                   \
+    X(double, strain_sum, "1", "sum of strain since the last row")                              \
+    X(int64_t, n_summed, "1", "steps in force_sum")                                             \
+    X(double, force_peak, "N", "largest row of the curve")                                      \
+    X(double, strain_peak, "1", "platen strain at the peak")                                    \
+    X(double, unbalanced, "1", "mean unbalanced force / mean contact force")
+
+#define BRC_SCALAR_MEMBER(type, name, unit, meaning)            type name;
+#define BRC_SCALAR_RENAMED(type, name, in_files, unit, meaning) type name;
+
+struct brc_rig {
+    const struct brc_rig_type *type;
+    struct brc_test_params params;
+    void *own; /* parameters of the type's own section; owned */
+    int n_platens;
+    struct brc_platen platen[BRC_MAX_PLATENS];
+    int axis;          /* of the load */
+    double sense;      /* +1 where shortening counts as positive, -1 where lengthening does */
+    double length[3];  /* m, of the specimen at the start, along each axis */
+    double section;    /* m2, area that the load is divided by */
+    bool has_gauge[3]; /* grains enough, far enough apart for a strain along x, y, z */
+    BRC_RIG_SCALARS(BRC_SCALAR_MEMBER, BRC_SCALAR_RENAMED)
+    struct brc_curve {
+        BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+        struct brc_table table;
+        struct brc_table own; /* the type's own columns, same rows */
+        void *own_columns;
+    } curve;
+    struct brc_table own_state; /* one row of the type's own scalars */
+    void *own_scalars;
+};
+
+/* Judges the keys of a test together. */
+int brc_rig_check(struct brc_context *ctx, const struct brc_test *test);
+/* Tables of the curve and of the type's own state, without a row of the curve. */
+int brc_rig_create(struct brc_context *ctx, struct brc_rig *rig, const struct brc_test *test);
+void brc_rig_free(struct brc_rig *rig);
+/* A further row of the curve, of zeros; its number. */
+int brc_rig_add_row(struct brc_context *ctx, struct brc_rig *rig, size_t *row);
 
 #endif

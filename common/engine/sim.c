@@ -241,7 +241,7 @@ static void start_masses(struct brc_sim *sim)
 }
 
 /* Grains, contacts and candidates; then the model's choice of loops. */
-static int build(struct brc_sim *sim, const struct brc_test_params *test)
+static int build(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
     sim->skin = sim->run.skin * mean_grain_radius(sim);
@@ -251,7 +251,7 @@ static int build(struct brc_sim *sim, const struct brc_test_params *test)
         brc_copy(b->x0[i], b->x[i]);
         memcpy(b->q0[i], b->q[i], sizeof b->q[i]);
     }
-    BRC_TRY(brc_rig_create(sim, test));
+    BRC_TRY(sim->rig.type->place(sim));
     start_masses(sim);
     BRC_TRY(sim->model.bond(sim, sim->state));
     BRC_TRY(rebuild_neighbours(sim));
@@ -277,7 +277,7 @@ static int start(struct brc_sim *sim)
     sim->damping_alpha = alpha;
     brc_integrate_kick(sim, sim->dt);
     sim->ledger.local_damping = 0;
-    brc_rig_restore(sim);
+    brc_platens_restore(sim);
     sim->model.energy(sim, sim->state, stored);
     sim->ledger.bond = stored[0];
     sim->ledger.contact_normal = stored[1];
@@ -287,9 +287,10 @@ static int start(struct brc_sim *sim)
 }
 
 /* A change of rate moves the mean velocities, so adaptive loading needs them in any case. */
-static void choose_damped(struct brc_sim *sim, const struct brc_test_params *test)
+static void choose_damped(struct brc_sim *sim)
 {
-    bool is_adaptive = test->loading == BRC_LOADING_ADAPTIVE && brc_rig_platens(test) > 0;
+    const struct brc_rig *rig = &sim->rig;
+    bool is_adaptive = rig->params.loading == BRC_LOADING_ADAPTIVE && rig->n_platens > 0;
     bool is_auto = sim->run.damped == BRC_DAMPED_AUTO;
     sim->damp_fluctuation = is_auto ? is_adaptive : sim->run.damped == BRC_DAMPED_FLUCTUATION;
     sim->tracks_mean =
@@ -311,7 +312,6 @@ static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
 {
     const struct brc_model *m = &sim->model;
     size_t n = n_grains + n_platens;
-    brc_rig_start_curve(sim);
     BRC_TRY(brc_bodies_create(sim->ctx, &sim->bodies, n_grains, n_platens, m->body_fields));
     BRC_TRY(
         brc_contacts_create(sim->ctx, &sim->pairs, "pairs", n, m->contact_fields, m->point_fields));
@@ -328,7 +328,12 @@ int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct br
     memset(sim, 0, sizeof *sim);
     sim->ctx = ctx;
     brc_events_init(&sim->events);
+    static const struct brc_rig_type no_test = {0};
+    static const struct brc_test_params no_params = {0};
+    const struct brc_test test = {.type = &no_test, .params = &no_params};
     int code = brc_model_complete(ctx, model, &sim->model);
+    if (code == 0)
+        code = brc_rig_create(ctx, &sim->rig, &test);
     if (code == 0)
         code = make_tables(sim, 0, 0);
     if (code != 0)
@@ -338,22 +343,22 @@ int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct br
 
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
                    const void *params, const struct brc_specimen *specimen,
-                   const struct brc_test_params *test, const struct brc_run_params *run)
+                   const struct brc_test *test, const struct brc_run_params *run)
 {
     memset(sim, 0, sizeof *sim);
     sim->ctx = ctx;
     sim->specimen = specimen;
     sim->run = *run;
-    choose_damped(sim, test);
     brc_events_init(&sim->events);
     BRC_TRY(brc_simd_check(ctx, run->simd));
     BRC_TRY(brc_model_complete(ctx, model, &sim->model));
     BRC_TRY(sim->model.check(ctx, params, specimen));
     const struct brc_model *m = &sim->model;
-    size_t n_grains = specimen->facets.n_cells, n_platens = (size_t)brc_rig_platens(test);
-    sim->rig.n_platens = (int)n_platens;
+    size_t n_grains = specimen->facets.n_cells, n_platens = (size_t)test->type->n_platens;
     sim->params = brc_alloc(ctx, 1, m->params.owner_size);
-    int code = sim->params ? 0 : BRC_ERR_MEMORY;
+    int code = sim->params ? brc_rig_create(ctx, &sim->rig, test) : BRC_ERR_MEMORY;
+    if (code == 0)
+        choose_damped(sim);
     if (code == 0 && m->params.owner_size > 0)
         memcpy(sim->params, params, m->params.owner_size);
     if (code == 0)
@@ -361,7 +366,7 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     if (code == 0 && m->point_lanes > 0)
         sim->pairs.lanes = sim->platens.lanes = m->point_lanes;
     if (code == 0)
-        code = build(sim, test);
+        code = build(sim);
     if (code == 0)
         code = start(sim);
     if (code != 0)
@@ -373,7 +378,7 @@ void brc_sim_free(struct brc_sim *sim)
 {
     if (sim->model.free)
         sim->model.free(sim->state);
-    brc_rig_free(sim);
+    brc_rig_free(&sim->rig);
     brc_contacts_free(&sim->pairs);
     brc_contacts_free(&sim->platens);
     brc_bodies_free(&sim->bodies);
@@ -405,7 +410,8 @@ int brc_sim_step(struct brc_sim *sim)
     BRC_TRY(check_path(sim));
     brc_sim_forces(sim);
     BRC_TRY(sim->ctx->code);
-    BRC_TRY(brc_rig_step(sim));
+    brc_platens_measure(sim);
+    BRC_TRY(sim->rig.type->drive(sim));
     BRC_TRY(follow_stiffness(sim, sim->n_rebuilds > listings));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
@@ -416,7 +422,7 @@ int brc_sim_step(struct brc_sim *sim)
         BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->pairs));
         BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->platens));
     }
-    return brc_rig_sample(sim);
+    return sim->rig.type->measure(sim);
 }
 
 int brc_sim_restore(struct brc_sim *sim)
@@ -428,7 +434,7 @@ int brc_sim_restore(struct brc_sim *sim)
     memset(sim->events.count, 0, sizeof sim->events.count);
     for (size_t i = 0; i < sim->events.table.n; i++)
         sim->events.count[sim->events.mode[i]]++;
-    brc_rig_restore(sim);
+    brc_platens_restore(sim);
     BRC_TRY(sim->model.restore(sim, sim->state));
     sim->model.select(sim, sim->state);
     return 0;
@@ -442,6 +448,10 @@ uint64_t brc_sim_hash(const struct brc_sim *sim)
     hash = brc_contacts_hash(&sim->platens, hash);
     hash = brc_table_hash(&sim->events.table, hash);
     hash = brc_table_hash(&sim->rig.curve.table, hash);
+    if (sim->rig.curve.own.set.n > 0)
+        hash = brc_table_hash(&sim->rig.curve.own, hash);
+    if (sim->rig.own_state.set.n > 0)
+        hash = brc_table_hash(&sim->rig.own_state, hash);
     for (int i = 0; i < brc_sim_n_scalars; i++)
         hash = brc_hash_bytes((const char *)sim + brc_sim_scalars[i].offset,
                               brc_type_size(brc_sim_scalars[i].type), hash);

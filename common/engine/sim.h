@@ -61,24 +61,8 @@ struct brc_run_params {
 };
 extern const struct brc_param_list brc_run_param_list;
 
-/* Scalars that belong to the state, declared once for saving and hashing (with the ledger's terms).
- */
-#define BRC_RIG_SCALARS(X, RENAMED)                                                             \
-    X(double, rate, "s-1", "strain rate")                                                       \
-    X(double, change, "1", "adaptive: change of log rate a step")                               \
-    X(double, strain_onset, "1", "adaptive: where damage began; 0: not yet")                    \
-    X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")                     \
-    RENAMED(int64_t, is_post_peak, is_lost, "1", "adaptive: the load has fallen from its peak") \
-    RENAMED(int64_t, is_steady, is_settled, "1", "the start has been left behind")              \
-    X(double, strain, "1", "platen strain, in the sense of the test")                           \
-    X(double, force, "N", "mean platen force now, in the sense of the test")                    \
-    X(double, force_sum, "N", "sum of force since the last row of the curve")                   \
-    X(double, strain_sum, "1", "sum of strain since the last row")                              \
-    X(int64_t, n_summed, "1", "steps in force_sum")                                             \
-    X(double, force_peak, "N", "largest row of the curve")                                      \
-    X(double, strain_peak, "1", "platen strain at the peak")                                    \
-    X(double, unbalanced, "1", "mean unbalanced force / mean contact force")
-
+/* Scalars that belong to the state, declared once for saving and hashing; with those of the rig and
+ * the ledger's terms. */
 #define BRC_SIM_SCALARS(X, RENAMED)                                                               \
     X(int64_t, step, "1", "steps made")                                                           \
     X(double, time, "s", "time")                                                                  \
@@ -87,25 +71,6 @@ extern const struct brc_param_list brc_run_param_list;
     X(double, stiffness_bound, "s-2", "largest sum k / m at the last estimate of dt_limit")       \
     X(double, damping_ahead, "J", "work of local damping over the half step after the last kick") \
     RENAMED(int64_t, n_rebuilds, n_listings, "1", "neighbour searches so far")
-
-#define BRC_SCALAR_MEMBER(type, name, unit, meaning)            type name;
-#define BRC_SCALAR_RENAMED(type, name, in_files, unit, meaning) type name;
-
-struct brc_rig {
-    struct brc_test_params params;
-    int n_platens;
-    struct brc_platen platen[BRC_MAX_PLATENS];
-    int axis;          /* of the load: 2 = z, 1 = y */
-    double sense;      /* +1 compression, -1 tension */
-    double length;     /* m, distance of the platens at the start */
-    double section;    /* m2, area that force is divided by */
-    bool has_gauge[3]; /* grains enough, far enough apart for a strain along x, y, z */
-    BRC_RIG_SCALARS(BRC_SCALAR_MEMBER, BRC_SCALAR_RENAMED)
-    struct brc_curve {
-        BRC_CURVE_FIELDS(BRC_COLUMN, BRC_COLUMN3)
-        struct brc_table table;
-    } curve;
-};
 
 struct brc_sim {
     struct brc_context *ctx;
@@ -143,7 +108,7 @@ extern const int brc_sim_n_scalars;
  * struct (copied); specimen must outlive the simulation. Nothing is left behind on failure. */
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
                    const void *params, const struct brc_specimen *specimen,
-                   const struct brc_test_params *test, const struct brc_run_params *run);
+                   const struct brc_test *test, const struct brc_run_params *run);
 /* The tables of a model's state without a row, for reading files; nothing else of it may be used.
  */
 int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model);

@@ -38,6 +38,10 @@ void brc_state_list(struct brc_sim *sim, struct brc_state *state)
     add_table(state, "platens/points", &sim->platens.points, false);
     add_table(state, "events", &sim->events.table, false);
     add_table(state, "curve", &sim->rig.curve.table, false);
+    if (sim->rig.curve.own.set.n > 0)
+        add_table(state, "curve/test", &sim->rig.curve.own, false);
+    if (sim->rig.own_state.set.n > 0)
+        add_table(state, "test", &sim->rig.own_state, true);
 }
 
 void *brc_state_value(const struct brc_state_part *part, int field, size_t row)

@@ -67,10 +67,11 @@ struct view {
     double to_eye[3], to_light[3];
 };
 
-static struct view choose_view(const struct brc_output_params *output, enum brc_test test)
+static struct view choose_view(const struct brc_output_params *output,
+                               const struct brc_rig_view *of_test)
 {
     bool top = output->view == BRC_VIEW_TOP ||
-               (output->view == BRC_VIEW_AUTO && test == BRC_TEST_BRAZILIAN);
+               (output->view == BRC_VIEW_AUTO && of_test && of_test->is_from_above);
     struct view v = {.tilt = top ? 16 : 76, .turn = top ? 0 : 28};
     double a = v.tilt * BRC_PI / 180, b = v.turn * BRC_PI / 180;
     brc_set(v.to_eye, sin(a) * sin(b), -sin(a) * cos(b), cos(a));
@@ -327,7 +328,7 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
                     const struct brc_output_params *output)
 {
     const struct brc_specimen *s = sim->specimen;
-    struct view v = choose_view(output, (enum brc_test)sim->rig.params.kind);
+    struct view v = choose_view(output, sim->rig.type->view);
     bool used[BRC_N_MODES][N_SHADES];
     struct cracks c;
     struct brc_text_file file;
@@ -365,29 +366,35 @@ static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const c
     brc_gnuplot_quoted(out, path);
 }
 
+/* Columns and labels of a test without a view of its own. */
+static const struct brc_rig_view plain_view = {.strain = "strain_axial",
+                                               .lateral = "strain_lateral",
+                                               .strain_label =
+                                                   "axial strain; dashed: lateral strain",
+                                               .stress_label = "axial stress"};
+
 /* Stress against strain: along the load, and across it to the left. */
 static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
 {
-    bool brazilian = runs->test == BRC_TEST_BRAZILIAN;
-    fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nplot ",
-            brazilian ? "platen strain" : "axial strain; dashed: lateral strain",
-            brazilian ? "nominal tensile stress 2F/(\u03c0DT)" : "axial stress");
+    const struct brc_rig_view *v = runs->view ? runs->view : &plain_view;
+    fprintf(out, "set xlabel '%s [%%]'\nset ylabel '%s [MPa]'\nplot ", v->strain_label,
+            v->stress_label);
     for (int i = 0; i < runs->n; i++) {
         fputs(i ? ", \\\n  " : "", out);
         put_file(out, runs, i, "curve.csv");
         fprintf(out,
                 " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines lw 2.4 "
                 "lc rgb '%s' title ",
-                brazilian ? "strain" : "strain_axial", run_colour(i));
+                v->strain, run_colour(i));
         brc_gnuplot_quoted(out, runs->label[i]);
-        if (brazilian)
+        if (!v->lateral)
             continue;
         fputs(", \\\n  ", out);
         put_file(out, runs, i, "curve.csv");
         fprintf(out,
-                " using (100*column('strain_lateral [1]')):(1e-6*column('stress [Pa]')) with lines "
+                " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines "
                 "lw 1.6 dt (8,5) lc rgb '%s' notitle",
-                run_colour(i));
+                v->lateral, run_colour(i));
     }
     fputc('\n', out);
 }

@@ -20,7 +20,7 @@ enum { BRC_PLOT_MAX_RUNS = 16 };
 /* Runs side by side: folder of each, relative to the folder of the picture. */
 struct brc_plot_runs {
     const char *title;
-    enum brc_test test;
+    const struct brc_rig_view *view; /* NULL: a test without one */
     int n;
     const char *label[BRC_PLOT_MAX_RUNS], *folder[BRC_PLOT_MAX_RUNS];
 };

@@ -14,20 +14,20 @@ static bool is_in_gauge(const struct brc_sim *sim, size_t grain)
 {
     const struct brc_rig *rig = &sim->rig;
     double middle = sim->bodies.x0[rig->platen[0].body][rig->axis] +
-                    0.5 * rig->length * rig->platen[0].n[rig->axis];
-    double reach = 0.5 * rig->length * rig->params.gauge;
-    return fabs(sim->bodies.x0[grain][rig->axis] - middle) <= reach;
+                    0.5 * rig->length[rig->axis] * rig->platen[0].n[rig->axis];
+    double half = 0.5 * rig->length[rig->axis] * rig->params.gauge;
+    return fabs(sim->bodies.x0[grain][rig->axis] - middle) <= half;
 }
 
 /* Grains in the gauge and the standard deviation of their places along k, which a slope needs: a
  * single layer would give the slope of its round-off. */
-static void judge(struct brc_sim *sim, int k)
+static void check_axis(struct brc_sim *sim, int k)
 {
     struct brc_rig *rig = &sim->rig;
     double low[3], high[3], mean = 0, square = 0;
     size_t n = 0;
     brc_specimen_extent(sim->specimen, low, high);
-    double width = k == rig->axis ? rig->length * rig->params.gauge : high[k] - low[k];
+    double width = k == rig->axis ? rig->length[k] * rig->params.gauge : high[k] - low[k];
     for (size_t i = 0; i < sim->bodies.n_grains; i++) {
         if (!is_in_gauge(sim, i))
             continue;
@@ -59,8 +59,8 @@ double brc_gauge_strain(const struct brc_sim *sim, int k)
     return -(n * sxu - sx * su) / (n * sxx - sx * sx);
 }
 
-void brc_gauge_judge(struct brc_sim *sim)
+void brc_gauge_check(struct brc_sim *sim)
 {
     for (int k = 0; k < 3; k++)
-        judge(sim, k);
+        check_axis(sim, k);
 }

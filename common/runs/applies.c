@@ -29,8 +29,13 @@ static const char *take_part(const char *text, const char *section, struct part 
     return part->choices + part->length;
 }
 
-static bool is_one_of(const char *text, const struct part *part)
+/* `*` stands for the tests that name the key themselves, so that a new test changes no list. */
+static bool is_one_of(const char *text, const struct part *part, const char *key)
 {
+    if (*part->choices == '*') {
+        int kind = brc_rigs_find(text);
+        return kind >= 0 && brc_rigs_uses(brc_rigs_at(kind), key);
+    }
     size_t n = strlen(text);
     for (const char *c = part->choices; c < part->choices + part->length;) {
         size_t length = strcspn(c, "| ,");
@@ -51,7 +56,7 @@ static const char *value_text(const struct brc_param *p, const void *values, cha
 }
 
 static int holds(struct brc_context *ctx, const struct brc_case *run_case, const struct part *part,
-                 bool *does)
+                 const char *key, bool *does)
 {
     char text[TEXT_SIZE];
     struct brc_param_list list;
@@ -60,7 +65,7 @@ static int holds(struct brc_context *ctx, const struct brc_case *run_case, const
     if (!p)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "'%s.%s' is not a key that another one can hang on",
                  part->section, part->key);
-    *does = is_one_of(value_text(p, brc_case_values(run_case, i), text), part);
+    *does = is_one_of(value_text(p, brc_case_values(run_case, i), text), part, key);
     return 0;
 }
 
@@ -78,7 +83,7 @@ int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const 
             if (!at)
                 BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s.%s: cannot read '%s'", section, p->key,
                          p->applies);
-            BRC_TRY(holds(ctx, run_case, &part, &does));
+            BRC_TRY(holds(ctx, run_case, &part, p->key, &does));
             is_true = is_true || does;
             is_more = strncmp(at, " or ", 4) == 0;
             at += is_more ? 4 : strspn(at, ", ");
@@ -139,13 +144,24 @@ static int list_others(struct brc_context *ctx, const struct brc_case *run_case,
     return 0;
 }
 
+/* The clause up to its end or a comma, `*` written out. */
+static const char *clause_text(const char *clause, const char *key, char text[TEXT_SIZE])
+{
+    int n = (int)strcspn(clause, ",*"), used = snprintf(text, TEXT_SIZE, "%.*s", n, clause);
+    for (int i = 0; clause[n] == '*' && i < brc_rigs_count(); i++)
+        if (brc_rigs_uses(brc_rigs_at(i), key) && used < TEXT_SIZE)
+            used += snprintf(text + used, (size_t)(TEXT_SIZE - used), "%s%s",
+                             text[used - 1] == '=' ? "" : "|", brc_rigs_at(i)->name);
+    return text;
+}
+
 static int refuse(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                   struct brc_param_list list, const struct brc_casefile_entry *e,
                   const char *clause)
 {
     struct part part;
     struct brc_param_list far;
-    char where[BRC_CASEFILE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE];
+    char where[BRC_CASEFILE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE], said[TEXT_SIZE];
     take_part(clause, section, &part);
     int i = brc_case_find_section(part.section, &far);
     const struct brc_param *p = brc_params_find(far, part.key);
@@ -153,10 +169,10 @@ static int refuse(struct brc_context *ctx, const struct brc_case *run_case, cons
         brc_casefile_find_entry(&run_case->file, part.section, part.key, far);
     BRC_TRY(list_others(ctx, run_case, section, list, &part, others));
     BRC_FAIL(ctx, BRC_ERR_INPUT,
-             "%s: %s.%s: applies only with %.*s, but %s.%s is %s%s; leave the key out, or change "
+             "%s: %s.%s: applies only with %s, but %s.%s is %s%s; leave the key out, or change "
              "%s.%s%s%s",
              brc_casefile_where(&run_case->file, e->line, e->is_override, where), section,
-             brc_casefile_key(e, list), (int)strcspn(clause, ","), clause, part.section, part.key,
+             brc_casefile_key(e, list), clause_text(clause, e->key, said), part.section, part.key,
              value_text(p, brc_case_values(run_case, i), text), given ? "" : " (its default)",
              part.section, part.key, *others ? "; what applies now is " : "", others);
 }

@@ -28,19 +28,20 @@ static int make_room(struct brc_context *ctx, struct brc_case *run_case)
         if (!run_case->model_params[i])
             return BRC_ERR_MEMORY;
     }
+    for (int i = 0; i < brc_rigs_count(); i++) {
+        run_case->rig_params[i] = brc_alloc(ctx, 1, brc_rigs_at(i)->params.owner_size);
+        if (!run_case->rig_params[i])
+            return BRC_ERR_MEMORY;
+    }
     return 0;
 }
 
-/* Sides of a core that is loaded along its axis. Those of a disc, which a Brazilian test needs
- * under its platens (specimen.c), would make polyhedra a third stiffer: a side cuts more corners
- * into the outer facets, and each corner is a spring. */
-enum { CORE_SIDES = 64 };
-
+/* The polygon that stands for a circle is the test's choice where the case makes none. */
 static void choose_sides(struct brc_case *run_case)
 {
     struct brc_specimen_params *s = &run_case->specimen;
-    if (s->sides == 0 && s->grains != BRC_GRAINS_MESH && run_case->test.kind != BRC_TEST_BRAZILIAN)
-        s->sides = CORE_SIDES;
+    if (s->sides == 0 && s->grains != BRC_GRAINS_MESH)
+        s->sides = brc_rigs_at(run_case->test.kind)->sides;
 }
 
 /* A section, or a key of the top level, that stands as if it were a key of another section. */
@@ -81,7 +82,8 @@ static int judge(struct brc_context *ctx, struct brc_case *run_case)
     BRC_TRY(brc_casefile_finish(ctx, &run_case->file, names, (size_t)i));
     for (int k = 0; k < i; k++)
         BRC_TRY(brc_applies_check(ctx, run_case, k, brc_case_section_values(run_case, k)));
-    int code = brc_rig_check(ctx, &run_case->test);
+    struct brc_test test = brc_case_test(run_case);
+    int code = brc_rig_check(ctx, &test);
     if (code != 0)
         brc_case_locate(ctx, run_case);
     choose_sides(run_case);
@@ -155,6 +157,8 @@ void brc_case_free(struct brc_case *run_case)
 {
     for (int i = 0; i < run_case->n_models; i++)
         free(run_case->model_params[i]);
+    for (int i = 0; i < BRC_CASE_MAX_RIGS; i++)
+        free(run_case->rig_params[i]);
     brc_casefile_free(&run_case->file);
     memset(run_case, 0, sizeof *run_case);
 }

@@ -6,10 +6,15 @@
 
 #include "common/engine/sim.h"
 #include "common/input/casefile.h"
+#include "common/rigs/rigs.h"
 #include "common/output/output.h"
 #include "common/runs/case_sections.h"
 
-enum { BRC_CASE_MAX_MODELS = 32, BRC_CASE_MAX_SECTIONS = 4 + BRC_CASE_MAX_MODELS };
+enum {
+    BRC_CASE_MAX_MODELS = 32,
+    BRC_CASE_MAX_RIGS = 32,
+    BRC_CASE_MAX_SECTIONS = 4 + BRC_CASE_MAX_MODELS + BRC_CASE_MAX_RIGS
+};
 
 struct brc_case {
     struct brc_casefile file;
@@ -20,6 +25,7 @@ struct brc_case {
     struct brc_output_params output;
     int n_models;                            /* registered */
     void *model_params[BRC_CASE_MAX_MODELS]; /* one filled struct a registered model; owned */
+    void *rig_params[BRC_CASE_MAX_RIGS];     /* one a test, of its own section; owned */
 };
 
 /* Reads a case with n overrides "section.key=value". Files that the case names are looked up from

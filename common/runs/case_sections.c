@@ -7,36 +7,70 @@
 
 enum { N_COMMON = 4 };
 
-bool brc_case_section(int i, const char **name, struct brc_param_list *list)
+/* A section: four common ones, whose values lie in the case, then one a model, then those of tests
+ * that have keys of their own. */
+struct section {
+    const char *name;
+    struct brc_param_list list;
+    size_t offset; /* of common values */
+    void *values;  /* of others; NULL without a case */
+};
+
+static bool find_section(const struct brc_case *run_case, int i, struct section *s)
 {
-    static const char *const common[N_COMMON] = {"specimen", "test", "run", "output"};
-    const struct brc_param_list *const lists[N_COMMON] = {&brc_specimen_param_list,
-                                                          &brc_test_param_list, &brc_run_param_list,
-                                                          &brc_output_param_list};
+    const struct section common[N_COMMON] = {
+        {"specimen", brc_specimen_param_list, offsetof(struct brc_case, specimen), NULL},
+        {"test", brc_test_param_list, offsetof(struct brc_case, test), NULL},
+        {"run", brc_run_param_list, offsetof(struct brc_case, run), NULL},
+        {"output", brc_output_param_list, offsetof(struct brc_case, output), NULL}};
+    int n_models = brc_registry_count(), left = i - N_COMMON - n_models;
     if (i < N_COMMON) {
-        *name = common[i];
-        *list = *lists[i];
+        *s = common[i];
         return true;
     }
-    if (i - N_COMMON >= brc_registry_count())
+    if (left < 0) {
+        const struct brc_model *model = brc_registry_at(i - N_COMMON);
+        void *values = run_case ? run_case->model_params[i - N_COMMON] : NULL;
+        *s = (struct section){model->name, model->params, 0, values};
+        return true;
+    }
+    for (int k = 0; k < brc_rigs_count(); k++) {
+        const struct brc_rig_type *rig = brc_rigs_at(k);
+        if (rig->params.n == 0 || left-- > 0)
+            continue;
+        *s = (struct section){rig->name, rig->params, 0, run_case ? run_case->rig_params[k] : NULL};
+        return true;
+    }
+    return false;
+}
+
+bool brc_case_section(int i, const char **name, struct brc_param_list *list)
+{
+    struct section s;
+    if (!find_section(NULL, i, &s))
         return false;
-    *name = brc_registry_at(i - N_COMMON)->name;
-    *list = brc_registry_at(i - N_COMMON)->params;
+    *name = s.name;
+    *list = s.list;
     return true;
 }
 
 void *brc_case_section_values(struct brc_case *run_case, int i)
 {
-    void *const common[N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
-                                    &run_case->output};
-    return i < N_COMMON ? common[i] : run_case->model_params[i - N_COMMON];
+    struct section s = {0};
+    find_section(run_case, i, &s);
+    return i < N_COMMON ? (char *)run_case + s.offset : s.values;
 }
 
 const void *brc_case_values(const struct brc_case *run_case, int i)
 {
-    const void *const common[N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
-                                          &run_case->output};
-    return i < N_COMMON ? common[i] : run_case->model_params[i - N_COMMON];
+    struct section s = {0};
+    find_section(run_case, i, &s);
+    return i < N_COMMON ? (const char *)run_case + s.offset : s.values;
+}
+
+struct brc_test brc_case_test(const struct brc_case *run_case)
+{
+    return brc_rigs_test(&run_case->test, run_case->rig_params[run_case->test.kind]);
 }
 
 int brc_case_find_section(const char *name, struct brc_param_list *list)

@@ -6,6 +6,7 @@
 #define BRC_CASE_SECTIONS_H
 
 #include "common/input/params.h"
+#include "common/rigs/rigs.h"
 
 struct brc_case;
 
@@ -24,5 +25,8 @@ int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_model **model, int cap, int *n);
 /* The filled parameters of a model. */
 const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model);
+
+/* The test that the case asks for. */
+struct brc_test brc_case_test(const struct brc_case *run_case);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "common/runs/case_text.h"
 
+#include "common/rigs/loading.h"
 #include "common/runs/case_files.h"
 
 #include <stdio.h>
@@ -36,10 +37,14 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
 {
     /* an automatic rate as a number: it hangs on strain_max, which may change when a run goes on */
     struct brc_test_params test = run_case->test;
-    test.rate = brc_rig_start_rate(&test);
+    const struct brc_rig_type *rig = brc_rigs_at(test.kind);
+    if (brc_rigs_uses(rig, "rate"))
+        test.rate = brc_loading_start_rate(&test);
     char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &run_case->specimen);
     if (text)
         text = add_section(ctx, text, "test", brc_test_param_list, &test);
+    if (text)
+        text = add_section(ctx, text, rig->name, rig->params, run_case->rig_params[test.kind]);
     if (text)
         text = add_section(ctx, text, "run", brc_run_param_list, &run_case->run);
     if (text)

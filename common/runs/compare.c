@@ -61,8 +61,9 @@ static int try_models(const struct compare *c)
     for (int i = 0; i < c->n; i++) {
         struct brc_sim sim;
         const struct brc_model *model = c->run[i].model;
+        struct brc_test test = brc_case_test(run_case);
         BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_case_params(run_case, model),
-                               c->order->specimen, &run_case->test, &run_case->run));
+                               c->order->specimen, &test, &run_case->run));
         brc_sim_free(&sim);
     }
     return 0;
@@ -169,8 +170,9 @@ static int write_table(struct compare *c)
 static int draw(struct compare *c)
 {
     const struct brc_case *run_case = c->order->run_case;
-    struct brc_plot_runs runs = {
-        .title = run_case->file.head.title, .test = (enum brc_test)run_case->test.kind, .n = c->n};
+    struct brc_plot_runs runs = {.title = run_case->file.head.title,
+                                 .view = brc_rigs_at(run_case->test.kind)->view,
+                                 .n = c->n};
     for (int i = 0; i < c->n; i++)
         runs.label[i] = runs.folder[i] = c->run[i].model->name;
     return run_case->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &run_case->output)

@@ -47,9 +47,10 @@ static int check_order(struct brc_context *ctx, const struct brc_converge_option
 {
     const struct brc_specimen_params *p = &o->run_case->specimen;
     bool is_given = p->grains == BRC_GRAINS_POINTS || p->grains == BRC_GRAINS_TESS;
-    if (o->run_case->test.kind == BRC_TEST_NONE)
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "test.kind none has no loading, so there is nothing to converge");
+    const struct brc_rig_type *rig = brc_rigs_at(o->run_case->test.kind);
+    if (rig->n_quantities == 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "test.kind %s has no loading, so there is nothing to converge",
+                 rig->name);
     if (is_given && o->seeds > 1)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "specimen.grains of a file make one specimen, whatever the seed; use --seeds 1");
@@ -79,11 +80,12 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
 {
     const struct brc_case *run_case = l->study.order->run_case;
     struct brc_sim sim;
+    struct brc_test test = brc_case_test(run_case);
     BRC_TRY(brc_sim_create(l->ctx, &sim, m->model, brc_case_params(run_case, m->model), specimen,
-                           &run_case->test, &run_case->run));
+                           &test, &run_case->run));
     m->test = sim.rig.params;
     m->specimen = brc_facets_hash(&specimen->facets);
-    l->study.n_results = brc_rig_results(&sim, l->study.results);
+    l->study.n_results = brc_rigs_results(&sim, l->study.results);
     brc_sim_free(&sim);
     m->setting = brc_alloc(l->ctx, BRC_CONVERGE_MAX_SETTINGS, sizeof *m->setting);
     return m->setting ? 0 : BRC_ERR_MEMORY;

@@ -3,6 +3,8 @@
 
 #include "common/base/folders.h"
 #include "common/base/signals.h"
+#include "common/rigs/curve.h"
+#include "common/rigs/loading.h"
 #include "common/engine/blowup.h"
 #include "common/engine/fragments.h"
 #include "common/output/frames.h"
@@ -217,7 +219,7 @@ static void report(struct run *r, bool is_done, bool is_stopped)
 {
     const struct brc_rig *rig = &r->sim.rig;
     double most = (double)(r->sim.run.max_steps - r->sim.step);
-    double by_rate = rig->n_platens > 0 ? brc_rig_steps_left(&r->sim) : most;
+    double by_rate = rig->n_platens > 0 ? brc_loading_steps_left(&r->sim) : most;
     struct brc_progress_report now = {.steps_left = isfinite(by_rate) ? fmin(by_rate, most) : NAN,
                                       .strain = rig->strain,
                                       .stress = rig->force / rig->section,
@@ -231,7 +233,7 @@ static void report(struct run *r, bool is_done, bool is_stopped)
 /* Why the run is over, NULL while it is not. */
 static const char *ended_by(const struct brc_sim *sim)
 {
-    if (brc_rig_done(sim))
+    if (brc_rigs_done(sim))
         return sim->rig.strain >= sim->rig.params.strain_max ? "test.strain_max" : "test.stop_drop";
     if (sim->step >= sim->run.max_steps)
         return "run.max_steps";
@@ -337,7 +339,7 @@ static int measure(const struct run *r, struct brc_summary *s)
         .energy_check = sim->run.ledger
                             ? brc_ledger_check(&sim->ledger, stored, rounding_energy(sim))
                             : BRC_ENERGY_OFF,
-        .unbalanced_max = brc_rig_unbalanced_max(sim),
+        .unbalanced_max = brc_curve_unbalanced_max(sim),
         .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
     snprintf(s->title, sizeof s->title, "%s", run_case->file.head.title);
@@ -350,7 +352,7 @@ static int measure(const struct run *r, struct brc_summary *s)
         s->n_points += (size_t)sim->platens.np[i];
     s->n_contacts_mean = r->counts.contact_steps / (double)sim->step;
     s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
-    s->n_results = brc_rig_results(sim, result);
+    s->n_results = brc_rigs_results(sim, result);
     for (int i = 0; i < s->n_results; i++)
         s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit,
                                                    result[i].note};
@@ -373,7 +375,7 @@ static int draw(struct run *r)
 {
     const struct brc_case *run_case = r->order->run_case;
     struct brc_plot_runs runs = {.title = run_case->file.head.title,
-                                 .test = (enum brc_test)run_case->test.kind,
+                                 .view = brc_rigs_at(run_case->test.kind)->view,
                                  .n = 1,
                                  .label = {r->sim.model.name},
                                  .folder = {"."}};
@@ -445,8 +447,9 @@ static int prepare(struct run *r)
     r->parameters = brc_case_text(r->ctx, o->run_case, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
+    struct brc_test test = brc_case_test(o->run_case);
     BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_case_params(o->run_case, o->model),
-                           o->specimen, &o->run_case->test, &o->run_case->run));
+                           o->specimen, &test, &o->run_case->run));
     if (brc_signals_held())
         BRC_FAIL(r->ctx, BRC_ERR_NOT_BEGUN,
                  "interrupted before the first step; nothing was saved, and %s is as it was",

@@ -5,6 +5,7 @@
  * and the part of a run that goes into lists. */
 #include "bench.h"
 
+#include "common/rigs/rigs.h"
 #include "common/geometry/grid.h"
 #include "polyhedra/poly.h"
 #include "tests/dodecahedra.h"
@@ -70,7 +71,8 @@ static void make(struct brc_context *ctx, struct brc_sim *sim, const struct brc_
     set(ctx, brc_test_param_list, &t, "strain_max", "0.99");
     if (getenv("BENCH_SIMD"))
         set(ctx, brc_run_param_list, &r, "simd", getenv("BENCH_SIMD"));
-    must(ctx, brc_sim_create(ctx, sim, &brc_model_polyhedra, &p, specimen, &t, &r));
+    const struct brc_test rig = brc_rigs_test(&t, NULL);
+    must(ctx, brc_sim_create(ctx, sim, &brc_model_polyhedra, &p, specimen, &rig, &r));
 }
 
 /* From the rate that has brought the load about to one of the paper's own: 6.3 1/s times its step

@@ -2,6 +2,7 @@
 /* Cost per contact from 1e2 grains to 1e5 (BENCH_GRAINS=1e6: to more, as far as there is memory),
  * beside the machine's bandwidth for as much memory; memory per grain; time of a tessellation.
  * Voronoi cells of jittered seeds, bonded, in compression. */
+#include "common/rigs/rigs.h"
 #include "bench.h"
 
 #include <malloc.h>
@@ -53,7 +54,8 @@ static void make(struct brc_context *ctx, const struct brc_model *model,
     must(ctx, brc_params_defaults(ctx, brc_run_param_list, &r));
     set(ctx, brc_test_param_list, &t, "loading", "fixed");
     set(ctx, brc_test_param_list, &t, "rate", "1e-7 1/s");
-    must(ctx, brc_sim_create(ctx, sim, model, params, specimen, &t, &r));
+    const struct brc_test rig = brc_rigs_test(&t, NULL);
+    must(ctx, brc_sim_create(ctx, sim, model, params, specimen, &rig, &r));
     free(params);
 }
 

@@ -2,6 +2,7 @@
 /* Time of a whole step of vgcm, a local point, over the compression of the paper's specimen of
  * about 8000 spheres through its peak: while elastic, with half of the points damaged, and on
  * average. Everything that a step does is in it. Beside them, what the machine allows. */
+#include "common/rigs/rigs.h"
 #include "bench.h"
 
 #include "vgcm/vgcm.h"
@@ -69,7 +70,8 @@ static void make(struct brc_context *ctx, const struct brc_specimen *specimen, s
         set(ctx, brc_run_param_list, &r, run[0], run[1]);
     for (; *test; test += 2)
         set(ctx, brc_test_param_list, &t, test[0], test[1]);
-    must(ctx, brc_sim_create(ctx, sim, &brc_model_vgcm, &p, specimen, &t, &r));
+    const struct brc_test rig = brc_rigs_test(&t, NULL);
+    must(ctx, brc_sim_create(ctx, sim, &brc_model_vgcm, &p, specimen, &rig, &r));
 }
 
 /* ns a point and step, over STEPS steps. */
@@ -135,7 +137,7 @@ static void time_points(struct brc_context *ctx, const struct brc_specimen *spec
     while (elastic.n < ELASTIC_REPEATS)
         bench_note(&elastic, time_steps(&sim, s.points, &total));
     report("vgcm_elastic_ns_point", &elastic, 5, limit);
-    while (!brc_rig_done(&sim) && !getenv("BENCH_SHORT")) {
+    while (!brc_rigs_done(&sim) && !getenv("BENCH_SHORT")) {
         double time = time_steps(&sim, s.points, &total);
         if (sim.step % 100 == 0)
             s = count_state(&sim);
@@ -170,7 +172,7 @@ static double strength(struct brc_context *ctx, const struct brc_specimen *speci
     struct brc_sim sim;
     make(ctx, specimen, &sim, run, test);
     double begin = cpu_seconds();
-    while (!brc_rig_done(&sim))
+    while (!brc_rigs_done(&sim))
         must(ctx, brc_sim_step(&sim));
     *seconds = cpu_seconds() - begin;
     *steps = (double)sim.step;

@@ -17,7 +17,7 @@ static struct press press(struct fixture *f, const char *name, const struct brc_
     snprintf(text[0], sizeof text[0], "specimen.jitter=%s", jitter);
     snprintf(text[1], sizeof text[1], "polyhedra.features=%s", features);
     hard_case(f, name, model, (const char *const[]){text[0], text[1]}, 2);
-    while (!brc_rig_done(&f->sim))
+    while (!brc_rigs_done(&f->sim))
         fixture_steps(f, 1);
     f->sim.rig.rate = 0; /* held until it rests */
     fixture_steps(f, 3000);
@@ -87,7 +87,7 @@ static void radius_ratio(void **state)
             volume += t->volume[k];
         }
         double lost = fabs(volume / f->specimen.domain_volume - 1);
-        while (!brc_rig_done(&f->sim))
+        while (!brc_rigs_done(&f->sim))
             fixture_steps(f, 1);
         double residual = brc_ledger_residual(&f->sim.ledger);
         hard_row("radius_ratio", model->name,

@@ -12,7 +12,7 @@ static double strength(struct fixture *f, const char *name, const struct brc_mod
                        const char *const *overrides, int n)
 {
     hard_case(f, name, model, overrides, n);
-    while (!brc_rig_done(&f->sim))
+    while (!brc_rigs_done(&f->sim))
         fixture_steps(f, 1);
     return f->sim.rig.force_peak / f->sim.rig.section;
 }

@@ -493,7 +493,8 @@ static void snap_back_is_refused(void **state)
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_test_param_list, &t));
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_run_param_list, &r));
     fixture_set(f, vgcm->params, params, "interaction: all; g_fn: 10 J/m2");
-    CHECK_FAILS(&f->ctx, brc_sim_create(&f->ctx, &f->sim, vgcm, params, &f->specimen, &t, &r),
+    const struct brc_test test = brc_rigs_test(&t, NULL);
+    CHECK_FAILS(&f->ctx, brc_sim_create(&f->ctx, &f->sim, vgcm, params, &f->specimen, &test, &r),
                 BRC_ERR_INPUT, "g_fn");
     test_free(params);
 }

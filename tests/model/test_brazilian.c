@@ -37,14 +37,14 @@ static void load_disc(struct fixture *f, const struct brc_model *model, int side
     fixture_specimen(f, text);
     snprintf(text, sizeof text, "kind: brazilian; %s", test);
     fixture_sim(f, model, settings, text, "");
-    while (!brc_rig_done(&f->sim))
+    while (!brc_rigs_done(&f->sim))
         fixture_steps(f, 1);
 }
 
 static double result(const struct fixture *f, const char *name)
 {
     struct brc_result all[BRC_MAX_RESULTS];
-    int n = brc_rig_results(&f->sim, all);
+    int n = brc_rigs_results(&f->sim, all);
     for (int i = 0; i < n; i++)
         if (strcmp(all[i].name, name) == 0)
             return all[i].value;

@@ -18,7 +18,7 @@ struct rock {
 static double result(const struct fixture *f, const char *name)
 {
     struct brc_result r[BRC_MAX_RESULTS];
-    int n = brc_rig_results(&f->sim, r);
+    int n = brc_rigs_results(&f->sim, r);
     for (int i = 0; i < n; i++)
         if (strcmp(r[i].name, name) == 0)
             return r[i].value;
@@ -33,7 +33,7 @@ static struct rock break_sample(struct fixture *f, const char *model, const char
         brc_specimen_free(&f->specimen);
     fixture_specimen(f, specimen);
     fixture_sim(f, brc_registry_find(model), "", test, "");
-    while (!brc_rig_done(&f->sim))
+    while (!brc_rigs_done(&f->sim))
         CHECK_OK(&f->ctx, brc_sim_step(&f->sim));
     return (struct rock){result(f, "E"), result(f, "nu"), result(f, "strength")};
 }

@@ -231,7 +231,7 @@ static void scale_does_not_matter(void **state)
 static double result(const struct fixture *f, const char *name)
 {
     struct brc_result r[BRC_MAX_RESULTS];
-    int n = brc_rig_results(&f->sim, r);
+    int n = brc_rigs_results(&f->sim, r);
     for (int i = 0; i < n; i++)
         if (strcmp(r[i].name, name) == 0)
             return r[i].value;

@@ -113,7 +113,7 @@ static size_t run(struct fixture *f, const char *settings, int64_t n, int64_t sa
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_output_param_list, &p));
     fixture_set(f, brc_output_param_list, &p, settings);
     brc_frames_init(frames);
-    while (f->sim.step < n && !brc_rig_done(&f->sim)) {
+    while (f->sim.step < n && !brc_rigs_done(&f->sim)) {
         CHECK_OK(&f->ctx, brc_frames_take(&f->ctx, frames, folder, &p, &f->sim, &nothing));
         fixture_steps(f, 1);
         if (f->sim.step == save_at) {
@@ -201,7 +201,7 @@ static void test_what_happens(void **state)
             assert_true(brc_sim_hash(&f->sim) == hash);
             assert_memory_equal(again.step, frames.step, n * sizeof *again.step);
             fixture_sim(f, model, "", "kind: tension; strain_max: 0.1", "");
-            while (!brc_rig_done(&f->sim))
+            while (!brc_rigs_done(&f->sim))
                 fixture_steps(f, 1);
             assert_true(brc_sim_hash(&f->sim) == hash);
             brc_frames_free(&again);

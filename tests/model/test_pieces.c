@@ -16,7 +16,7 @@ static void a_split_disc_is_in_halves(void **state)
         CHECK_OK(&f->ctx, brc_fragments_find(&f->ctx, &f->sim, &pieces));
         assert_int_equal(pieces.n, 1);
         brc_fragments_free(&pieces);
-        while (!brc_rig_done(&f->sim))
+        while (!brc_rigs_done(&f->sim))
             CHECK_OK(&f->ctx, brc_sim_step(&f->sim));
         CHECK_OK(&f->ctx, brc_fragments_find(&f->ctx, &f->sim, &pieces));
         print_message(

@@ -12,14 +12,14 @@ static const char elastic[] = "interaction: all; sigma_t: 1e3 MPa; tau: 1e3 MPa;
 static void load(struct fixture *f, const char *model, const char *test, int most)
 {
     fixture_sim(f, brc_registry_find("vgcm"), model, test, "");
-    while (!brc_rig_done(&f->sim) && f->sim.step < most)
+    while (!brc_rigs_done(&f->sim) && f->sim.step < most)
         fixture_steps(f, 1);
 }
 
 static struct brc_result result(const struct fixture *f, const char *name)
 {
     struct brc_result all[BRC_MAX_RESULTS];
-    int n = brc_rig_results(&f->sim, all);
+    int n = brc_rigs_results(&f->sim, all);
     for (int i = 0; i < n; i++)
         if (strcmp(all[i].name, name) == 0)
             return all[i];
@@ -105,9 +105,9 @@ static void a_test_ends_at_no_drop(void **state)
     struct brc_rig *rig = &f->sim.rig;
     assert_true(f->sim.events.table.n > 0 && rig->strain < rig->params.strain_max);
     rig->curve.force[rig->curve.table.n - 1] = -1e-3 * rig->force_peak;
-    assert_true(brc_rig_done(&f->sim));
+    assert_true(brc_rigs_done(&f->sim));
     rig->params.stop_drop = 0;
-    assert_false(brc_rig_done(&f->sim));
+    assert_false(brc_rigs_done(&f->sim));
 }
 
 static void platens_that_meet_end_the_run(void **state)
@@ -117,12 +117,12 @@ static void platens_that_meet_end_the_run(void **state)
     fixture_sim(f, brc_registry_find("vgcm"), "", "loading: fixed; rate: 1e-6 1/s", "");
     fixture_steps(f, 2);
     f->sim.rig.strain = 1 - 1e-7;
-    CHECK_FAILS(&f->ctx, brc_rig_step(&f->sim), BRC_ERR_BLOWUP,
+    CHECK_FAILS(&f->ctx, f->sim.rig.type->drive(&f->sim), BRC_ERR_BLOWUP,
                 "the platens have met at step 2, at a strain of 1: lower test.strain_max");
     fixture_sim(f, brc_registry_find("vgcm"), "", "kind: tension; loading: fixed; rate: 1e-6 1/s",
                 "");
     f->sim.rig.strain = 1;
-    CHECK_OK(&f->ctx, brc_rig_step(&f->sim));
+    CHECK_OK(&f->ctx, f->sim.rig.type->drive(&f->sim));
 }
 
 /* A grip holds the end grains. A grain behind them that the skin lists is not glued to the platen,
@@ -140,8 +140,9 @@ static void a_grip_holds_end_grains_alone(void **state)
         fixture_steps(f, 50);
         struct brc_run_params run = f->sim.run;
         run.skin = 3;
+        const struct brc_test test = brc_rigs_test(&f->sim.rig.params, NULL);
         CHECK_OK(&f->ctx, brc_sim_create(&f->ctx, &wide, &f->sim.model, f->sim.params, &f->specimen,
-                                         &f->sim.rig.params, &run));
+                                         &test, &run));
         for (int k = 0; k < 50; k++)
             CHECK_OK(&f->ctx, brc_sim_step(&wide));
         assert_true(wide.platens.n > f->sim.platens.n);
@@ -157,10 +158,11 @@ static void check_test(struct fixture *f, const char *settings, const char *mess
     struct brc_test_params test;
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_test_param_list, &test));
     fixture_set(f, brc_test_param_list, &test, settings);
+    const struct brc_test rig = brc_rigs_test(&test, NULL);
     if (message)
-        CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INPUT, message);
+        CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &rig), BRC_ERR_INPUT, message);
     else
-        CHECK_OK(&f->ctx, brc_rig_check(&f->ctx, &test));
+        CHECK_OK(&f->ctx, brc_rig_check(&f->ctx, &rig));
 }
 
 static void keys_that_bound_each_other_are_in_order(void **state)

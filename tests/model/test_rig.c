@@ -81,8 +81,8 @@ static void what_is_left_falls(void **state)
     double first = 0, before = HUGE_VAL;
     int64_t at = 0;
     pull(f, "target: 0.004; strain_max: 0.005; stop_drop: 0", 0);
-    for (; !brc_rig_done(&f->sim); fixture_steps(f, 1)) {
-        double left = brc_rig_steps_left(&f->sim);
+    for (; !brc_rigs_done(&f->sim); fixture_steps(f, 1)) {
+        double left = brc_loading_steps_left(&f->sim);
         assert_true((left < HUGE_VAL) == (rig->strain_onset > 0));
         if (left == HUGE_VAL)
             continue;
@@ -97,7 +97,7 @@ static void what_is_left_falls(void **state)
                   (long long)f->sim.step);
     CHECK_BETWEEN(first / (double)(f->sim.step - at), 1, 10);
     pull(f, "loading: fixed; rate: 1e-6 1/s; strain_max: 0.005", 200);
-    CHECK_NEAR(brc_rig_steps_left(&f->sim), 4800, 1e-6, 0);
+    CHECK_NEAR(brc_loading_steps_left(&f->sim), 4800, 1e-6, 0);
 }
 
 /* An onset that was none is forgotten, and a finer target takes steps in proportion. */
@@ -109,7 +109,7 @@ static void a_false_alarm_costs_little(void **state)
     const char *const targets[] = {"target: 0.002", "target: 0.0005", "target: 0.0005"};
     for (int k = 0; k < 3; k++) {
         pull(f, targets[k], 0);
-        while (!brc_rig_done(&f->sim)) {
+        while (!brc_rigs_done(&f->sim)) {
             fixture_steps(f, 1);
             if (k == 2 && f->sim.step == 1500) {
                 assert_true(rig->strain_onset == 0 && rig->is_steady);
@@ -145,7 +145,7 @@ static void a_rising_rate_drives_no_avalanche(void **state)
     rig->params.rate_min = 1.05e-7;
     rig->params.rate_max = 1.05e-7;
     f->sim.step += 1;
-    CHECK_OK(&f->ctx, brc_rig_step(&f->sim));
+    CHECK_OK(&f->ctx, rig->type->drive(&f->sim));
     double given = before - f->sim.ledger.rate_change;
     /* 2 v dv of loading's dv and the avalanche's v */
     CHECK_BETWEEN(given / (elastic * 1e-14), 0.05, 2 * 100 * 0.0501);
@@ -251,9 +251,10 @@ static void smaller_masses_are_refused(void **state)
     run = f->sim.run;
     run.mass_margin = 0.05;
     struct brc_sim sim;
+    const struct brc_test test = brc_rigs_test(&f->sim.rig.params, NULL);
     CHECK_FAILS(&f->ctx,
                 brc_sim_create(&f->ctx, &sim, brc_registry_find("vgcm"), f->sim.params,
-                               &f->specimen, &f->sim.rig.params, &run),
+                               &f->specimen, &test, &run),
                 BRC_ERR_INPUT, "run.mass_margin = 0.05 is unstable at step 0; use at least 0.");
 }
 

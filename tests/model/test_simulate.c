@@ -58,7 +58,7 @@ static void values_reach_the_model(void **state)
     struct place *p = *state;
     struct brc_context ctx = {.quiet = 1};
     struct calib_targets t = make_targets();
-    struct calib_simulator s = {.path = {[BRC_TEST_COMPRESSION] = p->path}, .dir = p->dir};
+    struct calib_simulator s = {.dir = p->dir};
     struct calib_objective o = {"vgcm", &t, 1, variables, 0.05, {calib_simulate, &s}};
     struct calib_evaluation v[3];
     const double x[] = {40e9, 80e9, 40e9};
@@ -70,7 +70,7 @@ static void values_reach_the_model(void **state)
     assert_true(v[0].residual[1].measured > 0 && v[0].n_runs == 1 && v[0].cpu_s > 0);
     assert_true(v[2].cost == v[0].cost && v[1].cost != v[0].cost);
     calib_simulator_free(&s);
-    assert_false(s.has_specimen[BRC_TEST_COMPRESSION]);
+    assert_false(s.has_specimen[brc_rigs_find("compression")]);
 }
 
 static void bad_runs_are_named(void **state)
@@ -78,7 +78,7 @@ static void bad_runs_are_named(void **state)
     struct place *p = *state;
     struct brc_context ctx = {.quiet = 1};
     struct calib_targets t = make_targets();
-    struct calib_simulator s = {.path = {[BRC_TEST_TENSION] = p->path}, .dir = p->dir};
+    struct calib_simulator s = {.dir = p->dir};
     struct calib_objective o = {"vgcm", &t, 1, variables, 0.05, {calib_simulate, &s}};
     struct calib_evaluation v;
     const double x[] = {40e9};
@@ -109,7 +109,7 @@ static void assignments_are_exact(void **state)
     struct brc_param_list list = {params, 2, 16};
     struct brc_context ctx = BRC_CONTEXT_INIT;
     const double x[] = {1.0 / 3, 0.1, 0};
-    struct calib_trial trial = {"m", BRC_TEST_COMPRESSION, 3, free_ones, x};
+    struct calib_trial trial = {"m", brc_rigs_find("compression"), 3, free_ones, x};
     char text[64];
     (void)state;
     for (size_t i = 0; i < 2; i++) {

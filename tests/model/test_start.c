@@ -21,7 +21,7 @@ static double off_field(const struct fixture *f)
 {
     double off = 0, largest = 0, v[3], dv[3];
     for (size_t i = 0; i < f->sim.bodies.n_grains; i++) {
-        brc_rig_field(&f->sim, i, v);
+        f->sim.rig.type->field(&f->sim, i, v);
         largest = fmax(largest, brc_norm(v));
         brc_sub(dv, f->sim.bodies.v[i], v);
         off = fmax(off, brc_norm(dv));
@@ -184,9 +184,10 @@ static void gravity_needs_a_stiffness(void **state)
         struct brc_run_params run = f->sim.run;
         struct brc_sim sim;
         run.gravity[2] = -9.81;
+        const struct brc_test test = brc_rigs_test(&f->sim.rig.params, NULL);
         CHECK_FAILS(&f->ctx,
                     brc_sim_create(&f->ctx, &sim, brc_registry_at(m), f->sim.params, &f->specimen,
-                                   &f->sim.rig.params, &run),
+                                   &test, &run),
                     BRC_ERR_INPUT, "nothing is in contact yet");
     }
 }

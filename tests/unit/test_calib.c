@@ -355,7 +355,7 @@ static void guesses_fit_the_models(void **state)
 
 /* A rock with formulas: E = a, nu = b, strengths in fixed ratios to a. */
 struct fake {
-    int n_runs[3];
+    int n_runs[16];
     const char *lost; /* a result that is not reported */
     double bad;       /* value of nu when not 0 */
 };
@@ -379,12 +379,12 @@ static int fake_run(struct brc_context *c, void *user, const struct calib_trial 
     out->cpu_s = 2;
     if (trial->x[0] > 1e12)
         BRC_FAIL(c, BRC_ERR_BLOWUP, "blown up");
-    if (trial->test == BRC_TEST_COMPRESSION) {
+    if (trial->test == brc_rigs_find("compression")) {
         fake_result(out, f, "E", trial->x[0], "Pa");
         fake_result(out, f, "nu", f->bad != 0 ? f->bad : trial->x[1], "1");
     }
     fake_result(out, f, "strength",
-                trial->x[0] / (trial->test == BRC_TEST_COMPRESSION ? 200 : 4000), "Pa");
+                trial->x[0] / (trial->test == brc_rigs_find("compression") ? 200 : 4000), "Pa");
     return 0;
 }
 
@@ -422,9 +422,9 @@ static void objective_weighs_residuals(void **state)
     CHECK_NEAR(v.residual[2].deviation, 5e6, 0, 1e-15);
     assert_int_equal(v.residual[3].quantity, CALIB_TENSILE_STRENGTH);
     /* each test once an evaluation, the Brazilian one not at all */
-    assert_int_equal(fake.n_runs[BRC_TEST_COMPRESSION], 2);
-    assert_int_equal(fake.n_runs[BRC_TEST_TENSION], 2);
-    assert_int_equal(fake.n_runs[BRC_TEST_BRAZILIAN], 0);
+    assert_int_equal(fake.n_runs[brc_rigs_find("compression")], 2);
+    assert_int_equal(fake.n_runs[brc_rigs_find("tension")], 2);
+    assert_int_equal(fake.n_runs[brc_rigs_find("brazilian")], 0);
     assert_int_equal(v.n_runs, 2);
     CHECK_NEAR(v.cpu_s, 4, 0, 0);
 }

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/rigs/curve.h"
+
+#include "common/engine/sim.h"
+#include "common/rigs/gauge.h"
+
+#include <math.h>
+
+static const char no_row[] = "no row of the curve: fewer steps than test.sample_steps",
+                  no_load[] = "no load in the sense of the test";
+const char brc_curve_no_peak[] =
+    "no peak: the load was still rising, or above 0.95 of the largest, at the end";
+/* A largest load is a peak once the load has been below this part of it. */
+static const double FALLEN = 0.95;
+
+static int add_row(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    struct brc_curve *c = &rig->curve;
+    const struct brc_ledger *l = &sim->ledger;
+    size_t i;
+    BRC_TRY(brc_rig_add_row(sim->ctx, rig, &i));
+    int across[2] = {0, rig->axis == 2 ? 1 : 2};
+    double stored = l->bond + l->contact_normal + l->contact_shear;
+    c->step[i] = sim->step;
+    c->time[i] = sim->time;
+    /* over the same steps: a fast rate would set them apart */
+    double steps = (double)rig->n_summed, mean = rig->n_summed > 0 ? rig->strain_sum / steps : 0;
+    double part = rig->strain > 0 ? mean / rig->strain : 1;
+    c->strain[i] = mean;
+    c->force[i] = rig->n_summed > 0 ? rig->force_sum / steps : 0;
+    c->stress[i] = c->force[i] / rig->section;
+    c->strain_axial[i] = part * rig->sense * brc_gauge_strain(sim, rig->axis);
+    c->strain_lateral[i] = part * rig->sense * 0.5 *
+                           (brc_gauge_strain(sim, across[0]) + brc_gauge_strain(sim, across[1]));
+    c->rate[i] = rig->rate;
+    c->unbalanced[i] = rig->unbalanced;
+    c->kinetic_ratio[i] = stored > 0 ? l->kinetic / stored : 0;
+    c->residual[i] = sim->run.ledger ? brc_ledger_residual(l) : 0;
+    c->broken[i] = (int64_t)sim->events.table.n;
+    rig->force_sum = rig->strain_sum = 0;
+    rig->n_summed = 0;
+    if (c->force[i] > rig->force_peak) {
+        rig->force_peak = c->force[i];
+        rig->strain_peak = c->strain[i];
+    }
+    return 0;
+}
+
+int brc_curve_sample(struct brc_sim *sim)
+{
+    return sim->step % sim->rig.params.sample_steps == 0 ? add_row(sim) : 0;
+}
+
+double brc_curve_unbalanced_max(const struct brc_sim *sim)
+{
+    const struct brc_curve *c = &sim->rig.curve;
+    double largest = 0, peak = sim->rig.force_peak;
+    for (size_t i = 0; i < c->table.n; i++) {
+        if (c->force[i] >= 0.1 * peak)
+            largest = fmax(largest, c->unbalanced[i]);
+        if (c->force[i] == peak)
+            break;
+    }
+    return largest;
+}
+
+const char *brc_curve_why_no_peak(const struct brc_rig *rig)
+{
+    const struct brc_curve *c = &rig->curve;
+    double peak = rig->force_peak;
+    if (c->table.n == 0)
+        return no_row;
+    if (!(peak > 0))
+        return no_load;
+    size_t i = 0;
+    while (i < c->table.n && c->force[i] != peak)
+        i++;
+    for (; i < c->table.n; i++)
+        if (c->force[i] < FALLEN * peak)
+            return NULL;
+    return brc_curve_no_peak;
+}
+
+void brc_curve_peak_results(const struct brc_sim *sim, struct brc_measured *out)
+{
+    const struct brc_rig *rig = &sim->rig;
+    const char *note = brc_curve_why_no_peak(rig);
+    const double value[] = {rig->force_peak / rig->section, rig->strain_peak, rig->force_peak};
+    for (int i = 0; i < BRC_N_PEAK_RESULTS; i++)
+        out[i] = (struct brc_measured){note ? NAN : value[i], note};
+}

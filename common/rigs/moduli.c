@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/rigs/moduli.h"
+
+#include "common/engine/sim.h"
+#include "common/rigs/curve.h"
+
+#include <gsl/gsl_fit.h>
+#include <math.h>
+
+static const char no_gauge[] = "fewer than 4 grains in the gauge, or all close to one place along "
+                               "the load",
+                  no_lateral[] = "fewer than 4 grains in the gauge, or all close to one place "
+                                 "across the load",
+                  no_rows[] = "fewer than 2 rows of the curve from test.modulus_low to "
+                              "test.modulus_high: lower test.sample_steps or load more slowly";
+
+int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *t)
+{
+    if (t->modulus_low < t->modulus_high)
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "test.modulus_low = %g must be below test.modulus_high = %g",
+             t->modulus_low, t->modulus_high);
+}
+
+/* Rows between the two parts of the peak, on the way up: [*first, *end). */
+static void modulus_rows(const struct brc_rig *rig, size_t *first, size_t *end)
+{
+    const struct brc_curve *c = &rig->curve;
+    double peak = rig->force_peak;
+    size_t i = 0;
+    while (i < c->table.n && c->force[i] < rig->params.modulus_low * peak)
+        i++;
+    *first = i;
+    while (i < c->table.n && c->force[i] <= rig->params.modulus_high * peak)
+        i++;
+    *end = i;
+}
+
+static double slope(const double *x, const double *y, size_t n)
+{
+    double c0, c1, cov00, cov01, cov11, chi2;
+    gsl_fit_linear(x, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
+    return c1;
+}
+
+static struct brc_measured measured(double value, const char *note)
+{
+    return (struct brc_measured){note ? NAN : value, note};
+}
+
+void brc_moduli_results(const struct brc_sim *sim, struct brc_measured *out)
+{
+    const struct brc_rig *rig = &sim->rig;
+    const struct brc_curve *c = &rig->curve;
+    size_t first, end;
+    modulus_rows(rig, &first, &end);
+    bool is_gauged = rig->has_gauge[rig->axis];
+    bool is_wide = rig->has_gauge[0] && rig->has_gauge[1] && rig->has_gauge[2];
+    const char *load = brc_curve_why_no_peak(rig);
+    const char *rows = load && load != brc_curve_no_peak ? load : end - first < 2 ? no_rows : NULL;
+    const char *axial = rows ? rows : is_gauged ? NULL : no_gauge;
+    const char *lateral = axial ? axial : is_wide ? NULL : no_lateral;
+    const double *stress = c->stress + first, *strain = c->strain_axial + first;
+    size_t k = rows ? 0 : end - first;
+    out[0] = measured(axial ? NAN : slope(strain, stress, k), axial); /* eq:gt12:25 */
+    out[1] = measured(lateral ? NAN : -slope(strain, c->strain_lateral + first, k),
+                      lateral); /* eq:gt12:24 */
+    out[2] = measured(rows ? NAN : slope(c->strain + first, stress, k), rows);
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "common/rigs/two_platens.h"
+
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
+#include "common/rigs/gauge.h"
+
+static const double PLATENS_MEET = 1; /* strain */
+
+int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *t)
+{
+    if (t->strain_max < PLATENS_MEET)
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "test.strain_max = %g: the platens meet at a strain of 1; allowed in compression and "
+             "in the Brazilian test (0, 1)",
+             t->strain_max);
+}
+
+double brc_two_platens_section(const struct brc_sim *sim, int axis)
+{
+    double low[3], high[3];
+    brc_specimen_extent(sim->specimen, low, high);
+    return sim->specimen->domain_volume / (high[axis] - low[axis]);
+}
+
+/* Each by half of the rate. */
+static void set_velocities(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    for (int i = 0; i < rig->n_platens; i++)
+        brc_scale(sim->bodies.v[rig->platen[i].body], rig->platen[i].n,
+                  rig->sense * 0.5 * rig->rate * rig->length[rig->axis]);
+}
+
+int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
+                          const struct brc_platen *like)
+{
+    struct brc_rig *rig = &sim->rig;
+    struct brc_bodies *b = &sim->bodies;
+    double low[3], high[3];
+    brc_specimen_extent(sim->specimen, low, high);
+    rig->axis = axis;
+    rig->sense = sense;
+    rig->section = section;
+    for (int k = 0; k < 3; k++)
+        rig->length[k] = high[k] - low[k];
+    for (int i = 0; i < rig->n_platens; i++) {
+        struct brc_platen *p = &rig->platen[i];
+        *p = *like;
+        if (p->surface == BRC_SURFACE_PLANE)
+            p->half_width = HUGE_VAL;
+        p->body = (int32_t)b->n_grains + i;
+        p->n[axis] = i == 0 ? 1 : -1;
+        p->across[0] = 1;
+        for (int k = 0; k < 3; k++)
+            b->x[p->body][k] = 0.5 * (low[k] + high[k]);
+        b->x[p->body][axis] = i == 0 ? low[axis] : high[axis];
+        brc_copy(b->x0[p->body], b->x[p->body]);
+    }
+    brc_gauge_check(sim);
+    rig->rate = rig->params.rate = brc_loading_start_rate(&rig->params);
+    set_velocities(sim);
+    for (size_t i = 0; i < b->n_grains; i++) {
+        brc_two_platens_field(sim, i, b->v[i]);
+        brc_copy(b->v_mean[i], b->v[i]);
+    }
+    return 0;
+}
+
+void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3])
+{
+    const struct brc_rig *rig = &sim->rig;
+    const struct brc_platen *p = &rig->platen[0];
+    int k = rig->axis;
+    double middle = sim->bodies.x0[p->body][k] + 0.5 * rig->length[k] * p->n[k];
+    brc_set(v, 0, 0, 0);
+    v[k] = -rig->sense * rig->rate * (sim->bodies.x0[grain][k] - middle);
+}
+
+/* Mean of the platens' forces, in the sense of the test. */
+static void measure_load(struct brc_rig *rig)
+{
+    double mean = 0;
+    for (int i = 0; i < rig->n_platens; i++)
+        mean += rig->sense * rig->platen[i].force / rig->n_platens;
+    rig->force = mean;
+    rig->force_sum += mean;
+    rig->n_summed += 1;
+}
+
+int brc_two_platens_drive(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    measure_load(rig);
+    if (rig->sense > 0 && rig->strain + rig->rate * sim->dt >= PLATENS_MEET)
+        BRC_FAIL(sim->ctx, BRC_ERR_BLOWUP,
+                 "the platens have met at step %lld, at a strain of %g: lower test.strain_max (now "
+                 "%g) or test.rate",
+                 (long long)sim->step, rig->strain + rig->rate * sim->dt, rig->params.strain_max);
+    brc_loading_step(sim);
+    set_velocities(sim);
+    return 0;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two platens that face each other along one axis and move alike: what compression, tension and the
+ * Brazilian test share. */
+#ifndef BRC_TWO_PLATENS_H
+#define BRC_TWO_PLATENS_H
+
+#include "common/engine/rig.h"
+#include "common/rigs/curve.h"
+#include "common/rigs/loading.h"
+
+/* Places the platens at the specimen's ends along axis, shaped and bonded as `like` is, and gives
+ * them and the grains the velocity field of a uniform strain at the starting rate. sense: +1 where
+ * they approach. The load is divided by the section [m2]. */
+int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
+                          const struct brc_platen *like);
+/* Strain and load of the step, then the rate and the velocities of the platens. Platens that meet
+ * are an error. */
+int brc_two_platens_drive(struct brc_sim *sim);
+/* The field of a uniform strain about the middle of the specimen. */
+void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3]);
+/* Platens that approach meet at a strain of 1. */
+int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *test);
+/* Mean area of the specimen across an axis [m2]. */
+double brc_two_platens_section(const struct brc_sim *sim, int axis);
+
+#endif
