@@ -5,6 +5,7 @@
 #define BRC_INTEGRATE_KERNELS_H
 
 #include "common/engine/integrate.h"
+#include "common/engine/rotation.h"
 #include "common/base/lanes.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
@@ -147,7 +148,7 @@ static __attribute__((noinline)) void brc_kick_spin(const struct brc_bodies *b, 
             sum[3] = {p->f[0][k] + p->d[0][k], p->f[1][k] + p->d[1][k], p->f[2][k] + p->d[2][k]};
         brc_copy(lold, b->l[n]);
         brc_axpy(b->l[n], dt, sum);
-        brc_integrate_spin(b->w[n], b->q[n], b->l[n], b->inertia[n]);
+        brc_rotation_spin(b->w[n], b->q[n], b->l[n], b->inertia[n]);
         sums->kinetic[k] += 0.5 * brc_dot(lold, b->w[n]);
     }
     brc_lanes_at3(p->now, b->w + i);

@@ -3,6 +3,7 @@
 
 #include "common/engine/blowup.h"
 #include "common/engine/integrate.h"
+#include "common/engine/mass_scaling.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
@@ -133,7 +134,7 @@ static double stiffness_bound(const struct brc_sim *sim)
     double bound = 0;
     for (size_t i = 0; i < b->n_grains; i++) {
         double k[2], least = fmin(b->inertia[i][0], fmin(b->inertia[i][1], b->inertia[i][2]));
-        brc_integrate_stiffness(sim, i, k);
+        brc_mass_scaling_stiffness(sim, i, k);
         bound = fmax(bound, k[0] / b->mass[i]);
         if (sim->model.flags & BRC_MODEL_ROTATES)
             bound = fmax(bound, k[1] / least);
@@ -177,9 +178,9 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
 static int update_masses(struct brc_sim *sim, bool is_listed)
 {
     double margin = sim->run.mass_margin, mass = 0;
-    brc_integrate_scale_masses(sim);
+    brc_mass_scaling_update(sim);
     if (sim->step == 0)
-        BRC_TRY(brc_integrate_loose_masses(sim));
+        BRC_TRY(brc_mass_scaling_loose(sim));
     if (margin >= SAFE_MASS_MARGIN || !is_listed)
         return 0;
     for (size_t i = 0; i < sim->bodies.n_grains; i++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Direct tension along z: two platens hold the end grains. */
 #include "common/engine/sim.h"
-#include "common/rigs/moduli.h"
+#include "common/rigs/elastic_moduli.h"
 #include "common/rigs/two_platens.h"
 
 static const struct brc_quantity quantities[] = {BRC_MODULI_QUANTITIES, BRC_PEAK_QUANTITIES};

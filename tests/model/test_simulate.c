@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The objective with real runs of a small block: values reach the model, results come back. */
+#include "common/rigs/rigs.h"
 #include "calib/simulate.h"
 #include "tests/near.h"
 
@@ -59,6 +60,7 @@ static void values_reach_the_model(void **state)
     struct brc_context ctx = {.quiet = 1};
     struct calib_targets t = make_targets();
     struct calib_simulator s = {.dir = p->dir};
+    s.path[brc_rigs_find("compression")] = p->path;
     struct calib_objective o = {"vgcm", &t, 1, variables, 0.05, {calib_simulate, &s}};
     struct calib_evaluation v[3];
     const double x[] = {40e9, 80e9, 40e9};
@@ -79,6 +81,7 @@ static void bad_runs_are_named(void **state)
     struct brc_context ctx = {.quiet = 1};
     struct calib_targets t = make_targets();
     struct calib_simulator s = {.dir = p->dir};
+    s.path[brc_rigs_find("tension")] = p->path;
     struct calib_objective o = {"vgcm", &t, 1, variables, 0.05, {calib_simulate, &s}};
     struct calib_evaluation v;
     const double x[] = {40e9};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Calibration: target files, the uniform-strain moduli and their inverse, the first guesses, and
  * the objective with formulas in place of simulations. */
+#include "common/rigs/rigs.h"
 #include "calib/guess.h"
 #include "calib/objective.h"
 #include "common/engine/model.h"

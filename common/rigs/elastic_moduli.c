@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "common/rigs/moduli.h"
+#include "common/rigs/elastic_moduli.h"
 
 #include "common/engine/sim.h"
 #include "common/rigs/curve.h"

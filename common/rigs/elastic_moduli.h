@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Elastic moduli: least squares over the rows of the curve between two parts of the peak. */
-#ifndef BRC_MODULI_H
-#define BRC_MODULI_H
+#ifndef BRC_ELASTIC_MODULI_H
+#define BRC_ELASTIC_MODULI_H
 
 #include "common/engine/rig.h"
 
