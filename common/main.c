@@ -72,6 +72,7 @@ static int act_info(struct brc_context *ctx, const struct options *o);
 static int act_export(struct brc_context *ctx, const struct options *o);
 static int act_params(struct brc_context *ctx, const struct options *o);
 static int act_models(struct brc_context *ctx, const struct options *o);
+static int act_tests(struct brc_context *ctx, const struct options *o);
 
 static const struct command commands[] = {
     {"run", 'R', "CASE", "run one model through the test of a case file",
@@ -101,6 +102,8 @@ static const struct command commands[] = {
      "list the keys of a section of the case file: a model, specimen, test, run, output",
      "breccia params vgcm", "Without a section: all of them.\n", act_params},
     {"models", 'M', "", "list the contact models", "breccia models", "", act_models},
+    {"tests", 'T', "", "list the tests: keys of `test:` that each uses, and what it measures",
+     "breccia tests", "", act_tests},
 };
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -501,6 +504,19 @@ static int act_models(struct brc_context *ctx, const struct options *o)
     (void)ctx, (void)o;
     for (int i = 0; i < brc_registry_count(); i++)
         printf("%-12s %s\n", brc_registry_at(i)->name, brc_registry_at(i)->citation);
+    return 0;
+}
+
+static int act_tests(struct brc_context *ctx, const struct options *o)
+{
+    (void)ctx, (void)o;
+    for (int i = 0; i < brc_rigs_count(); i++) {
+        const struct brc_rig_type *rig = brc_rigs_at(i);
+        printf("%s: %s\n  keys: %s\n", rig->name, rig->meaning, rig->keys);
+        for (int k = 0; k < rig->n_quantities; k++)
+            printf("  %-15s %-3s %s\n", rig->quantities[k].name, rig->quantities[k].unit,
+                   rig->quantities[k].meaning);
+    }
     return 0;
 }
 

@@ -14,7 +14,7 @@ enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
 
 /* Keys that tests share; each test names those that it uses (`kind=*`). */
 #define BRC_TEST_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                              \
-    CHOICE(kind, BRC_RIG_NAMES, "compression", "see `breccia tests`")                            \
+    CHOICE(kind, BRC_RIG_NAMES, BRC_RIG_DEFAULT, "see `breccia tests`")                          \
     CHOICE(loading, "adaptive|fixed", "adaptive",                                                \
            "adaptive: fast while the specimen is elastic, slow while it breaks; fixed: at rate", \
            "kind=*")                                                                             \

@@ -161,9 +161,8 @@ void brc_output_cell(FILE *out, const char *text)
     fputc('"', out);
 }
 
-static void csv_header(FILE *out, const struct brc_table *t)
+static void csv_header(FILE *out, const struct brc_table *t, const char **comma)
 {
-    const char *comma = "";
     char cell[CELL_SIZE];
     for (int i = 0; i < t->set.n; i++) {
         const struct brc_field *f = &t->set.fields[i];
@@ -172,12 +171,11 @@ static void csv_header(FILE *out, const struct brc_table *t)
                 snprintf(cell, sizeof cell, "%s [%s]", f->name, f->unit);
             else
                 snprintf(cell, sizeof cell, "%s_%d [%s]", f->name, j + 1, f->unit);
-            fputs(comma, out);
+            fputs(*comma, out);
             brc_output_cell(out, cell);
-            comma = ",";
+            *comma = ",";
         }
     }
-    fputc('\n', out);
 }
 
 static void csv_value(FILE *out, const struct brc_field *f, const void *column, size_t k)
@@ -198,29 +196,40 @@ static void csv_value(FILE *out, const struct brc_field *f, const void *column, 
     }
 }
 
-void brc_output_table(FILE *out, const struct brc_table *t)
+static void csv_row(FILE *out, const struct brc_table *t, size_t row, const char **comma)
 {
-    csv_header(out, t);
-    for (size_t row = 0; row < t->n; row++) {
-        const char *comma = "";
-        for (int i = 0; i < t->set.n; i++) {
-            const struct brc_field *f = &t->set.fields[i];
-            size_t width = brc_table_saves(t, i) ? (size_t)f->width : 0;
-            for (size_t j = 0; j < width; j++) {
-                fputs(comma, out);
-                csv_value(out, f, brc_table_column(t, i), row * width + j);
-                comma = ",";
-            }
+    for (int i = 0; i < t->set.n; i++) {
+        const struct brc_field *f = &t->set.fields[i];
+        size_t width = brc_table_saves(t, i) ? (size_t)f->width : 0;
+        for (size_t j = 0; j < width; j++) {
+            fputs(*comma, out);
+            csv_value(out, f, brc_table_column(t, i), row * width + j);
+            *comma = ",";
         }
+    }
+}
+
+void brc_output_table(FILE *out, const struct brc_table *t, const struct brc_table *beside)
+{
+    const char *comma = "";
+    csv_header(out, t, &comma);
+    if (beside)
+        csv_header(out, beside, &comma);
+    fputc('\n', out);
+    for (size_t row = 0; row < t->n; row++) {
+        comma = "";
+        csv_row(out, t, row, &comma);
+        if (beside)
+            csv_row(out, beside, row, &comma);
         fputc('\n', out);
     }
 }
 
 int brc_output_csv(struct brc_context *ctx, const char *dir, const char *name,
-                   const struct brc_table *t)
+                   const struct brc_table *t, const struct brc_table *beside)
 {
     struct brc_text_file file;
     BRC_TRY(brc_text_file_begin(ctx, &file, dir, name));
-    brc_output_table(file.out, t);
+    brc_output_table(file.out, t, beside);
     return brc_text_file_end(ctx, &file);
 }

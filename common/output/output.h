@@ -86,9 +86,9 @@ const struct brc_summary_value *brc_output_result(const struct brc_summary *s, c
  * ends. */
 void brc_output_cell(FILE *out, const char *text);
 /* One column a value of the BRC_STATE fields; the header names them with their units:
- * "step [1],x_1 [m],x_2 [m]". */
+ * "step [1],x_1 [m],x_2 [m]". beside: more columns of the same rows; NULL: none. */
 int brc_output_csv(struct brc_context *ctx, const char *dir, const char *name,
-                   const struct brc_table *t);
-void brc_output_table(FILE *out, const struct brc_table *t);
+                   const struct brc_table *t, const struct brc_table *beside);
+void brc_output_table(FILE *out, const struct brc_table *t, const struct brc_table *beside);
 
 #endif

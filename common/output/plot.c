@@ -54,7 +54,7 @@ int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_s
         column.shear[i] = sum[BRC_MODE_SHEAR];
         column.torsion[i] = sum[BRC_MODE_TORSION];
     }
-    int code = brc_output_csv(ctx, dir, "broken.csv", &table);
+    int code = brc_output_csv(ctx, dir, "broken.csv", &table, NULL);
     brc_table_free(&table);
     return code;
 }

@@ -118,7 +118,7 @@ static int write_to(struct brc_context *ctx, const char *path, const struct targ
 static int put_table(struct brc_context *ctx, FILE *out, const void *what)
 {
     (void)ctx;
-    brc_output_table(out, what);
+    brc_output_table(out, what, NULL);
     return 0;
 }
 

@@ -367,8 +367,9 @@ static int measure(const struct run *r, struct brc_summary *s)
 static int write_tables(struct run *r)
 {
     const char *dir = r->order->dir;
-    BRC_TRY(brc_output_csv(r->ctx, dir, "curve.csv", &r->sim.rig.curve.table));
-    return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table);
+    BRC_TRY(
+        brc_output_csv(r->ctx, dir, "curve.csv", &r->sim.rig.curve.table, &r->sim.rig.curve.own));
+    return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table, NULL);
 }
 
 static int draw(struct run *r)

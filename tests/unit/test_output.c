@@ -186,7 +186,7 @@ static void test_csv(void **state)
     rows.x[1][0] = 0.1;
     rows.x[1][2] = 1e-300;
     rows.mode[1] = 255;
-    CHECK_OK(&ctx, brc_output_csv(&ctx, NULL, path, &table));
+    CHECK_OK(&ctx, brc_output_csv(&ctx, NULL, path, &table, NULL));
     char *text = read_all(path);
     assert_string_equal(text, "step [1],x_1 [m],x_2 [m],x_3 [m],mode [1]\n"
                               "0,0,0,0,0\n"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameter lists and units: quantities, ranges, choices, texts, and the messages of each error. */
 #include "rig_list.h"
+#include "common/rigs/rigs.h"
 #include "common/input/params.h"
 #include "common/input/casefile.h"
 #include "common/engine/rig.h"
