@@ -1,96 +1,93 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The bond law: one pair of faces that were one facet (eqs 11-15). Total displacements of material
- * points carried by both bodies, so that rigid motion of a pair gives no force, whatever the angle.
- */
+/* The bond law of four pairs of faces that were one facet (eqs 11-15). Total displacements of
+ * material points carried by both bodies, so that rigid motion of a pair gives no force, whatever
+ * the angle. The loop has four contacts side by side (motion_kernels.inc.h); who has one alone
+ * gives it to all lanes (bond_of_contact.c). */
 #ifndef POLY_BOND_H
 #define POLY_BOND_H
 
-#include "common/geometry/vec.h"
+#include "polyhedra/lanes3.h"
 
-#include <stdbool.h>
-
-/* Constants of one bond. */
-struct poly_bond {
-    double kn, kt; /* N/m: modulus x area / strain length */
-    double ktheta; /* N m: 0 without torsion */
-    double length; /* m, strain length */
+/* Constants of four bonds. */
+struct poly_bonds4 {
+    brc_lanes kn, kt; /* N/m: modulus x area / strain length; 0 where there is no bond */
+    brc_lanes ktheta; /* N m: 0 without torsion */
+    brc_lanes length; /* m, strain length */
     double eps_th;
     double theta_th; /* HUGE_VAL: no limit */
 };
 
-/* Where the two halves are now, in space. */
-struct poly_bond_pose {
-    double pa[3], pb[3]; /* material points on a and b */
-    double na[3], nb[3]; /* outward normals of the two faces */
-    double ta[3], tb[3]; /* tangents that were one at the start; unused without torsion */
+/* Where the two halves are now, in axes of space. */
+struct poly_bond_pose4 {
+    brc_lanes pa[3], pb[3]; /* material points on a and b, from the centre of a */
+    brc_lanes n[3];         /* mean normal, from a to b */
+    brc_lanes twist;        /* rad, turn of b relative to a about n; 0 without torsion */
 };
 
-struct poly_bond_result {
-    double n[3];    /* mean normal, from a to b */
-    double f[3];    /* N, force on b at the place; a gets the opposite */
-    double m;       /* N m, moment on b along n; a gets the opposite */
-    double x[3];    /* place: midpoint of the material points */
-    double term[3]; /* of eq 15: tension, shear, torsion */
-    double energy;  /* J, stored */
+struct poly_bond_state4 {
+    brc_lanes f[3];    /* N, force on b at the place; a gets the opposite */
+    brc_lanes m;       /* N m, moment on b along n; a gets the opposite */
+    brc_lanes arm[3];  /* place: midpoint of the material points, from the centre of a */
+    brc_lanes opening; /* m, positive apart */
+    brc_lanes term[3]; /* of eq 15: tension, shear, torsion */
+    brc_lanes energy;  /* J, stored */
 };
 
-/* atan2(y, x), by its series where that is exact to round-off. */
-static inline double poly_angle(double x, double y)
+/* Mean normal of the two faces, whose outward normals are na and nb. */
+BRC_LANES_INLINE void poly_mean_normal(brc_lanes n[3], const brc_lanes na[3], const brc_lanes nb[3])
 {
-    double t = y / x;
-    if (x > 0 && fabs(t) < 1e-3)
-        return t * (1 - t * t * (1.0 / 3 - t * t / 5));
-    return atan2(y, x);
+    poly_sub3(n, na, nb);
+    poly_scale3(n, n, 1 / brc_lanes_sqrt(brc_lanes_dot(n, n)));
 }
 
-/* Relative rotation about n of two tangents. */
-static inline double poly_twist(const double n[3], const double ta[3], const double tb[3])
+/* Turn about n of two tangents that were one at the start; 0 where the mask is not set. */
+BRC_LANES_INLINE brc_lanes poly_twist(const brc_lanes n[3], const brc_lanes ta[3],
+                                      const brc_lanes tb[3], brc_mask intact)
 {
-    double c[3];
-    brc_cross(c, ta, tb);
-    return poly_angle(brc_dot(ta, tb) - brc_dot(ta, n) * brc_dot(tb, n), brc_dot(c, n));
+    brc_lanes c[3];
+    brc_lanes_cross(c, ta, tb);
+    brc_lanes x = brc_lanes_dot(ta, tb) - brc_lanes_dot(ta, n) * brc_lanes_dot(tb, n);
+    brc_lanes y = brc_lanes_where(intact, brc_lanes_dot(c, n));
+    x = brc_lanes_pick(intact, x, brc_lanes_all(1));
+    /* the series of the arc tangent: what it leaves out is below t^10 / 11 */
+    brc_lanes t = y / x, t2 = t * t;
+    brc_lanes angle = t * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 * (1.0 / 7 - t2 * (1.0 / 9)))));
+    brc_mask small = poly_positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(0.03));
+    if (brc_lanes_any(~small))
+        for (int k = 0; k < BRC_LANES; k++)
+            angle[k] = small[k] ? angle[k] : atan2(y[k], x[k]);
+    return angle;
 }
 
-static inline void poly_bond_law(struct poly_bond_result *r, const struct poly_bond *bond,
-                                 const struct poly_bond_pose *pose, const bool torsion)
+BRC_LANES_INLINE void poly_bond_law(struct poly_bond_state4 *r, const struct poly_bonds4 *bond,
+                                    const struct poly_bond_pose4 *pose)
 {
-    double u[3], ut[3];
-    brc_sub(r->n, pose->na, pose->nb);
-    brc_normalise(r->n, r->n);
-    brc_sub(u, pose->pb, pose->pa);
-    double un = brc_dot(u, r->n);
-    brc_copy(ut, u);
-    brc_axpy(ut, -un, r->n);
-    double open = un > 0 ? un : 0; /* eq:gt12:12 */
-    for (int i = 0; i < 3; i++) {
-        r->f[i] = -bond->kn * open * r->n[i]; /* eq:gt12:11 */
-        r->f[i] -= bond->kt * ut[i];          /* eq:gt12:13 */
-        r->x[i] = 0.5 * (pose->pa[i] + pose->pb[i]);
+    brc_lanes u[3], ut[3];
+    const brc_lanes *n = pose->n;
+    poly_sub3(u, pose->pb, pose->pa);
+    brc_lanes un = brc_lanes_dot(u, n);
+    poly_set3(ut, u[0] - un * n[0], u[1] - un * n[1], u[2] - un * n[2]);
+    brc_lanes open = brc_lanes_max(un, brc_lanes_all(0)); /* eq:gt12:12 */
+    r->opening = un;
+    for (int k = 0; k < 3; k++) {
+        r->f[k] = -bond->kn * open * n[k]; /* eq:gt12:11 */
+        r->f[k] -= bond->kt * ut[k];       /* eq:gt12:13 */
+        r->arm[k] = 0.5 * (pose->pa[k] + pose->pb[k]);
     }
-    double slip2 = brc_norm2(ut);
-    r->energy = 0.5 * (bond->kn * open * open + bond->kt * slip2);
-    r->term[0] = open / (bond->length * bond->eps_th); /* eq:gt12:15 */
-    r->term[1] = sqrt(slip2) / (bond->length * bond->eps_th);
-    r->term[2] = 0;
-    r->m = 0;
-    if (torsion) {
-        double theta = poly_twist(r->n, pose->ta, pose->tb);
-        r->m = -bond->ktheta * theta; /* eq:gt12:14 */
-        r->energy += 0.5 * bond->ktheta * theta * theta;
-        r->term[2] = fabs(theta) / bond->theta_th;
-    }
+    brc_lanes limit = bond->length * bond->eps_th;
+    brc_lanes slip = brc_lanes_sqrt(brc_lanes_dot(ut, ut));
+    r->m = -bond->ktheta * pose->twist; /* eq:gt12:14 */
+    r->term[0] = open / limit;
+    r->term[1] = slip / limit;
+    r->term[2] = brc_lanes_abs(pose->twist) / bond->theta_th;
+    r->energy = 0.5 * (bond->kn * open * open + bond->kt * slip * slip +
+                       bond->ktheta * pose->twist * pose->twist);
 }
 
-static inline bool poly_bond_breaks(const struct poly_bond_result *r)
+/* The bond breaks where this is above 1. */
+BRC_LANES_INLINE brc_lanes poly_bond_use(const struct poly_bond_state4 *r)
 {
-    return r->term[0] + r->term[1] + r->term[2] > 1; /* eq:gt12:15 */
-}
-
-/* 0 tension, 1 shear, 2 torsion: the largest term of eq 15. */
-static inline int poly_bond_mode(const struct poly_bond_result *r)
-{
-    int mode = r->term[1] > r->term[0] ? 1 : 0;
-    return r->term[2] > r->term[mode] ? 2 : mode;
+    return r->term[0] + r->term[1] + r->term[2]; /* eq:gt12:15 */
 }
 
 #endif

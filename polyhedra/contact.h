@@ -1,33 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The collision law of one feature contact (eqs 3-5, 8-10) and the weights of the `merged` rule. */
+/* The springs of four feature contacts side by side: normal, tangential and viscous force (eqs 4,
+ * 8-10), their energy and stiffness. The loops over pairs and platens call these; knows the
+ * geometry of a contact and the motion of its bodies at it, not where either comes from. */
 #ifndef POLY_CONTACT_H
 #define POLY_CONTACT_H
 
-#include "distance.h"
+#include "polyhedra/geometry.h"
 
-/* Weight of crossing edges: full from this squared sine on (5.7 degrees). */
-#define POLY_SKEW 0.01
-
-/* A feature contact: geometry from the distance functions, in space. */
-struct poly_touch {
-    double n[3];   /* unit, from a to b (eq 3) */
-    double x[3];   /* middle between the two closest points */
-    double delta;  /* m, overlap R1 + R2 - distance, positive in contact */
-    double weight; /* of the spring, (0, 1]; 1 except under `merged` */
-    double g[3];   /* 1/m, gradient part: force on b is -K delta^2 / 2 times this, at x */
-    double c[3];   /* 1, its couple on b in the same measure */
-    bool graded;   /* g and c are not zero */
+/* What the contacts of grains share. */
+struct poly_spring_law {
+    double kn, kt; /* N/m */
+    double stiff;  /* N/m, the larger one of those that act */
+    double limit;  /* largest tangential displacement per overlap: mu kn / kt */
 };
-
-/* A full spring with an overlap; normal and place follow. */
-static inline void poly_touch_begin(struct poly_touch *t, double delta)
-{
-    t->delta = delta;
-    t->weight = 1;
-    t->graded = false;
-    brc_set(t->g, 0, 0, 0);
-    brc_set(t->c, 0, 0, 0);
-}
 
 /* Pair stiffness of two feature stiffnesses: harmonic, equal for equal grains. */
 static inline double poly_pair_stiffness(double a, double b)
@@ -35,120 +20,158 @@ static inline double poly_pair_stiffness(double a, double b)
     return a + b > 0 ? 2 * a * b / (a + b) : 0;
 }
 
-/* Rises from 0 at x <= 0 to 1 at x >= 1 with continuous slope, which goes to *slope. */
-static inline double poly_smooth(double x, double *slope)
+/* Force on b and its moment about the centre of a. */
+struct poly_wrench4 {
+    brc_lanes f[3], m[3];
+};
+
+/* What four contacts add to the sums of their pairs (POLY_SUM_NORMAL and so on). */
+struct poly_sums4 {
+    struct poly_wrench4 normal, shear;
+    brc_lanes k[3], stored, slid;
+    struct poly_wrench4 viscous;
+    brc_lanes none;
+};
+
+/* Springs of four contacts, as POLY_SPRING has them. */
+struct poly_springs4 {
+    brc_lanes xi[3], weight, n[3], none;
+};
+
+BRC_LANES_INLINE void poly_force_at(struct poly_wrench4 *w, const brc_lanes f[3],
+                                    const brc_lanes arm[3])
 {
-    *slope = 0;
-    if (x <= 0)
-        return 0;
-    if (x >= 1)
-        return 1;
-    *slope = 6 * x * (1 - x);
-    return x * x * (3 - 2 * x);
+    poly_set3(w->f, f[0], f[1], f[2]);
+    brc_lanes_cross(w->m, arm, f);
 }
 
-/* Factor of the weight of a vertex at v by one vertex u of the other core: 0 where the two overlap
- * by themselves, 1 from sqrt(5) R on. rest2 = (2 R)^2, ell2 = R^2. */
-static inline double poly_vertex_factor(const double v[3], const double u[3], double rest2,
-                                        double ell2, double grad[3])
+/* Elastic normal force, with the gradient part under `merged`. */
+BRC_LANES_INLINE void poly_normal_force(struct poly_wrench4 *w, const struct poly_geometry4 *t,
+                                        double kn, const brc_lanes arm[3])
 {
-    double r[3], slope;
-    brc_sub(r, v, u);
-    double s = poly_smooth((brc_norm2(r) - rest2) / ell2, &slope);
-    brc_scale(grad, r, 2 * slope / ell2);
-    return s;
-}
-
-/* Weight of the spring of vertex v, from 1/2 where a vertex of the other core overlaps it (and has
- * the other half) to 1; grad is its gradient. */
-static inline double poly_vertex_weight(const double v[3], const double (*u)[3], int32_t n,
-                                        double rest2, double ell2, double grad[3])
-{
-    double product = 1, total[3] = {0, 0, 0};
-    for (int32_t i = 0; i < n; i++) {
-        double r[3], g[3];
-        brc_sub(r, v, u[i]);
-        if (brc_norm2(r) >= rest2 + ell2)
-            continue;
-        double s = poly_vertex_factor(v, u[i], rest2, ell2, g);
-        for (int k = 0; k < 3; k++)
-            total[k] = total[k] * s + product * g[k];
-        product *= s;
-    }
-    brc_scale(grad, total, 0.5);
-    return 0.5 + 0.5 * product;
-}
-
-/* Weight of a foot at t on an edge: 0 at its ends, full from ell inside; with its slope. */
-static inline double poly_foot_weight(double t, double length, double ell, double *slope)
-{
-    double s0, s1;
-    double w0 = poly_smooth(t / ell, &s0), w1 = poly_smooth((length - t) / ell, &s1);
-    *slope = (s0 * w1 - w0 * s1) / ell;
-    return w0 * w1;
-}
-
-/* Weight of a crossing edge pair with inside feet, and the gradient parts g and c of its touch.
- * n points from edge a to edge b with gap d; see README.md for the derivation. */
-static inline void poly_crossing_weight(struct poly_touch *t, const struct poly_crossing *x,
-                                        double ell, double d)
-{
-    double da, db, dp;
-    double wa = poly_foot_weight(x->ta, x->la, ell, &da),
-           wb = poly_foot_weight(x->tb, x->lb, ell, &db);
-    double wp = poly_smooth(x->sin2 / POLY_SKEW, &dp);
-    double by_a = da * wb * wp, by_b = wa * db * wp, by_angle = wa * wb * dp / POLY_SKEW;
-    t->weight = wa * wb * wp;
-    t->graded = by_a != 0 || by_b != 0 || by_angle != 0;
-    if (!t->graded)
-        return;
-    double bn[3], ba[3], gn[3], scale = 1 / x->sin2;
-    brc_cross(bn, x->b, t->n);
-    brc_cross(ba, x->b, x->a);
-    for (int i = 0; i < 3; i++) {
-        t->g[i] = (by_a * (x->a[i] - x->c * x->b[i]) + by_b * (x->c * x->a[i] - x->b[i])) * scale;
-        t->c[i] = -(d * scale * (x->c * by_a + by_b) * bn[i] + 2 * x->c * by_angle * ba[i]);
-    }
-    /* from the foot on b to the middle */
-    brc_cross(gn, t->n, t->g);
-    brc_axpy(t->c, d / 2, gn);
+    brc_lanes f[3], grade = -0.5 * kn * t->delta * t->delta;
+    poly_scale3(f, t->n, kn * t->weight * t->delta); /* eq:gt12:4 */
+    poly_axpy3(f, grade, t->g);
+    poly_force_at(w, f, arm);
+    poly_axpy3(w->m, grade, t->c);
 }
 
 /* Old tangential displacement turned with the contact frame: tilt from the old to the new normal,
- * then twirl by the angle about it. The length is kept. */
-static inline void poly_turn(double xi[3], const double n_old[3], const double n[3], double twirl)
+ * then twirl by the angle 2 t about it. The length is kept. */
+BRC_LANES_INLINE void poly_turn_spring(brc_lanes xi[3], const brc_lanes n_old[3],
+                                       const brc_lanes n[3], brc_lanes t)
 {
-    double r[3], a[3], t = twirl / 2, scale = 1 / (1 + t * t);
-    brc_cross(r, n_old, n);
-    double c = brc_dot(n_old, n), along = brc_dot(r, xi) / (1 + c);
-    brc_cross(a, r, xi);
+    brc_lanes r[3], a[3], c = brc_lanes_dot(n_old, n), t2 = 1 + t * t, tilt = 1 + c;
+    brc_lanes both = 1 / (t2 * tilt), per = both * tilt;
+    brc_lanes_cross(r, n_old, n);
+    brc_lanes along = brc_lanes_dot(r, xi) * (both * t2);
+    brc_lanes_cross(a, r, xi);
     for (int i = 0; i < 3; i++)
         xi[i] = c * xi[i] + a[i] + along * r[i];
-    brc_cross(a, n, xi);
+    brc_lanes_cross(a, n, xi);
     for (int i = 0; i < 3; i++)
-        xi[i] = ((1 - t * t) * xi[i] + 2 * t * a[i]) * scale;
+        xi[i] = ((2 - t2) * xi[i] + 2 * t * a[i]) * per;
 }
 
-/* Adds the tangential part of du to xi and caps it (eqs 8-9): what is left over has slipped. */
-static inline void poly_slide(double xi[3], const double n[3], const double du[3], double limit)
+/* Adds the tangential part of du to xi and caps it: what is left over has slipped. Returns where it
+ * has. */
+BRC_LANES_INLINE brc_mask poly_slide_spring(brc_lanes xi[3], const brc_lanes n[3],
+                                            const brc_lanes du[3], brc_lanes limit)
 {
-    for (int i = 0; i < 3; i++)
-        xi[i] += du[i]; /* eq:gt12:9 */
-    brc_axpy(xi, -brc_dot(xi, n), n);
-    double xi2 = brc_norm2(xi);
-    if (xi2 > limit * limit)
-        brc_scale(xi, xi, limit / sqrt(xi2)); /* eq:gt12:8 */
+    poly_add3(xi, xi, du); /* eq:gt12:9 */
+    poly_axpy3(xi, -brc_lanes_dot(xi, n), n);
+    brc_lanes xi2 = brc_lanes_dot(xi, xi);
+    brc_mask slips = brc_lanes_less(limit * limit, xi2);
+    brc_lanes cap = brc_lanes_pick(slips, limit / brc_lanes_sqrt(xi2), brc_lanes_all(1));
+    poly_scale3(xi, xi, cap);
+    return slips;
 }
 
-/* Viscous force on b (eq 10) for the velocity v of b relative to a. The normal part never turns the
- * normal force fn into a pull. */
-static inline void poly_viscous(double f[3], const double n[3], const double v[3], double gn,
-                                double gt, double fn)
+/* What a contact wants to know of the motion of its bodies in the step. */
+struct poly_slip4 {
+    brc_lanes du[3]; /* m, displacement of b relative to a at the contact */
+    brc_lanes twirl; /* half the mean turn of both about the normal */
+    brc_lanes limit; /* struct poly_spring_law */
+};
+
+/* Tangential springs: xi and the normals of the last step become those of now; old is the weight
+ * that they had, where they touch now. What a spring loses or gains by a change of weight alone
+ * counts as slip. */
+BRC_LANES_INLINE brc_mask poly_shear_force(struct poly_springs4 *p, struct poly_sums4 *s,
+                                           const struct poly_geometry4 *t,
+                                           const struct poly_slip4 *slip, double kt,
+                                           const brc_lanes arm[3], brc_lanes old, const bool ledger)
 {
-    double vn = brc_dot(v, n);
-    double normal = poly_most(-gn * vn, -fn); /* eq:gt12:10 */
+    brc_lanes xi[3], before[3], f[3];
+    const brc_lanes *du = slip->du;
+    brc_mask touches = poly_positive(t->weight);
+    poly_set3(xi, p->xi[0], p->xi[1], p->xi[2]);
+    poly_turn_spring(xi, p->n, t->n, slip->twirl);
+    poly_mask3(xi, poly_positive(old), xi);
+    poly_set3(before, xi[0], xi[1], xi[2]);
+    brc_mask slips = poly_slide_spring(xi, t->n, du, slip->limit * t->delta);
+    poly_mask3(xi, touches, xi);
+    poly_scale3(f, xi, -kt * t->weight); /* eq:gt12:8 */
+    poly_force_at(&s->shear, f, arm);
+    for (int k = 0; k < 3; k++) {
+        p->xi[k] = brc_lanes_pick(touches, xi[k], p->xi[k]);
+        p->n[k] = brc_lanes_pick(touches, t->n[k], p->n[k]);
+    }
+    if (!ledger)
+        return slips;
+    brc_lanes part[3], along = brc_lanes_dot(du, t->n);
+    for (int k = 0; k < 3; k++)
+        part[k] = (old * before[k] + t->weight * xi[k]);
+    brc_lanes work = brc_lanes_dot(part, du) - along * brc_lanes_dot(part, t->n);
+    s->slid = 0.5 * kt * work;
+    s->stored =
+        0.5 * kt * (t->weight * brc_lanes_dot(xi, xi) - old * brc_lanes_dot(before, before));
+    return slips;
+}
+
+/* Viscous force on b for the velocity u of b relative to a. The normal part never turns the normal
+ * force into a pull. */
+BRC_LANES_INLINE void poly_viscous_force(brc_lanes f[3], const struct poly_geometry4 *t, double kn,
+                                         brc_lanes gn, brc_lanes gt, const brc_lanes u[3])
+{
+    brc_lanes vn = brc_lanes_dot(u, t->n), across = t->weight * gt;
+    brc_lanes normal =
+        brc_lanes_max(-t->weight * gn * vn, -kn * t->weight * t->delta); /* eq:gt12:10 */
     for (int i = 0; i < 3; i++)
-        f[i] = normal * n[i] - gt * (v[i] - vn * n[i]);
+        f[i] = normal * t->n[i] - across * (u[i] - vn * t->n[i]);
+}
+
+/* Stiffness of four springs: A of df = -A d, columns a[j], for a shift d of b at the contact. With
+ * the energy w kn delta^2 / 2 and the slope g of w, the normal force gives
+ * w kn n n - kn delta (n g + g n); a tangential spring that sticks w kt (1 - n n) + kt xi g; one
+ * that slips along t has no stiffness in that direction, and -mu kn w t n by its cap. q is what a
+ * change of weight does. */
+BRC_LANES_INLINE void poly_spring_stiffness(brc_lanes a[3][3], brc_lanes q[3],
+                                            const struct poly_spring_law *law,
+                                            const struct poly_geometry4 *t, const brc_lanes xi[3],
+                                            brc_mask slips, const bool friction)
+{
+    const brc_lanes kn = law->kn * t->weight, none = brc_lanes_all(0);
+    const brc_lanes kt = friction ? law->kt * t->weight : none;
+    brc_lanes push = law->kn * t->delta, slide[3] = {none, none, none};
+    brc_lanes size2 = brc_lanes_where(slips, brc_lanes_dot(xi, xi));
+    brc_lanes per = brc_lanes_where(poly_positive(size2), 1 / size2);
+    for (int i = 0; i < 3; i++) {
+        q[i] = -push * t->n[i];
+        if (friction)
+            q[i] += law->kt * xi[i];
+    }
+    if (friction)
+        poly_scale3(slide, xi, kt * per);
+    brc_lanes cap = law->limit * brc_lanes_sqrt(size2); /* mu kn w = kt w limit */
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3; i++) {
+            a[j][i] = (kn - kt) * t->n[i] * t->n[j] + q[i] * t->g[j] - push * t->g[i] * t->n[j];
+            if (friction)
+                a[j][i] -= slide[i] * (xi[j] + cap * t->n[j]);
+            if (i == j)
+                a[j][i] += kt;
+        }
 }
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shape operation: cells become eroded cores with the mass of the whole cell. */
-#include "poly.h"
+#include "polyhedra/poly.h"
 
 #include "common/specimen/erosion.h"
 #include "common/base/grow.h"
@@ -106,10 +106,12 @@ int poly_shape(struct brc_sim *sim, void *state)
         code = shape_cell(sim, st, &e, i);
     eroder_free(&e);
     BRC_TRY(code);
-    st->world = brc_alloc(sim->ctx, st->shapes.vertex_first[st->shapes.n], sizeof *st->world);
-    st->turn = brc_alloc(sim->ctx, sim->bodies.n, sizeof *st->turn);
-    st->plane = brc_alloc(sim->ctx, st->shapes.face_first[st->shapes.n], sizeof *st->plane);
-    if (st->world == NULL || st->turn == NULL || st->plane == NULL)
+    st->global_vertices =
+        brc_alloc(sim->ctx, st->shapes.vertex_first[st->shapes.n], sizeof *st->global_vertices);
+    st->rotation = brc_alloc(sim->ctx, sim->bodies.n, sizeof *st->rotation);
+    st->global_planes =
+        brc_alloc(sim->ctx, st->shapes.face_first[st->shapes.n], sizeof *st->global_planes);
+    if (st->global_vertices == NULL || st->rotation == NULL || st->global_planes == NULL)
         return BRC_ERR_MEMORY;
     for (size_t i = sim->bodies.n_grains; i < sim->bodies.n; i++)
         sim->bodies.q[i][0] = 1;

@@ -1,46 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "features.h"
+#include "polyhedra/features.h"
 
-#include "listing.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-void poly_list_free(struct poly_list *l)
-{
-    free(l->feature);
-    free(l->work);
-    free(l->edge);
-    memset(l, 0, sizeof *l);
-}
-
-int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct poly_feature *f)
-{
-    if (l->n == l->cap) {
-        size_t cap = l->cap > 0 ? 2 * l->cap : 64;
-        struct poly_feature *grown = brc_realloc(ctx, l->feature, cap, sizeof *grown);
-        if (grown == NULL)
-            return BRC_ERR_MEMORY;
-        l->feature = grown;
-        l->cap = cap;
-    }
-    l->feature[l->n++] = *f;
-    return 0;
-}
-
-double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3],
-                         enum poly_rule rule, double rest)
-{
-    struct poly_foot foot;
-    double highest;
-    poly_highest(c, q, &highest);
-    if (highest <= 0)
-        return 0;
-    poly_foot_closed(&foot, c, face, q);
-    double path = foot.s - rest;
-    int32_t out = rule == POLY_STRICT ? poly_outside(c, &c->face[face], q) : -1;
-    return out < 0 ? path : poly_most(path, brc_dot(c->side[out].m, q) - c->side[out].off);
-}
+#include "polyhedra/listing_kernels.inc.h"
 
 int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
                        enum poly_rule rule, double skin, double *allowance)
@@ -48,52 +9,134 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
     return list_features(ctx, l, p, rule, skin, allowance);
 }
 
-double poly_free_path(const struct poly_pair *p, const struct poly_feature *f, enum poly_rule rule,
-                      double most)
+/* --- vertices --------------------------------------------------------------------------------- */
+
+double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3],
+                         enum poly_rule rule, double contact_distance)
 {
-    if (f->kind == POLY_EDGES) {
-        const struct edge_pairs at = {.i = {f->i, f->i, f->i, f->i}, .j = {f->j, f->j, f->j, f->j}};
-        return paths_of_edges(p, &at, rule, most)[0];
+    struct poly_closest at;
+    double highest;
+    poly_highest(c, q, &highest);
+    if (highest <= 0)
+        return 0;
+    poly_closest_on_face(&at, c, face, q);
+    double path = at.s - contact_distance;
+    int32_t out = rule == POLY_STRICT ? poly_outside(c, &c->face[face], q) : -1;
+    return out < 0 ? path : poly_most(path, brc_dot(c->side[out].m, q) - c->side[out].off);
+}
+
+/* The other core's vertices near v lower its weight. */
+static void fade_vertex(struct poly_geometry4 *t, const struct poly_pair *p, bool of_b,
+                        const brc_lanes v[3], brc_lanes sign, const int32_t near[POLY_NEAR])
+{
+    const struct poly_lengths len = {.contact_distance = p->contact_distance, .fade = p->fade};
+    const double(*u)[3] = of_b ? p->va : p->vb;
+    bool all = near[0] == POLY_MANY_NEAR;
+    int32_t n = all ? (of_b ? p->a.n_vertices : p->b.n_vertices) : POLY_NEAR;
+    struct poly_fading f;
+    poly_fading_begin(&f);
+    for (int32_t i = 0; i < n && (all || near[i] != POLY_NONE_NEAR); i++) {
+        brc_lanes r[3];
+        poly_all3(r, u[all ? i : near[i]]);
+        poly_sub3(r, v, r);
+        poly_fading_add(&f, r, brc_lanes_first(BRC_LANES), &len);
     }
+    poly_weigh_vertex(t, v, sign, &f);
+}
+
+/* Vertex of one body against a face of the other, or its core (`merged`). */
+static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, struct poly_feature *f,
+                         double *margin, enum poly_rule rule)
+{
     bool of_b = f->kind == POLY_VERTEX_B;
     const struct poly_core *c = of_b ? &p->a : &p->b;
-    double q[3];
-    poly_to_body(q, of_b ? p->ra : p->rb, of_b ? p->xa : p->xb, of_b ? p->vb[f->j] : p->va[f->i]);
-    return poly_path_to_face(c, of_b ? f->i : f->j, q, rule, p->rest);
-}
-
-/* --- feet ------------------------------------------------------------------------------------- */
-
-double poly_foot_margin(const struct poly_core *c, const struct poly_foot *foot, const double q[3])
-{
-    int32_t index = foot->place >> 2;
-    double margin = foot->s, along[3], d[3];
-    if ((foot->place & 3) == POLY_ON_FACE) {
-        const struct poly_face *f = &c->face[index];
-        for (int32_t k = f->first; k < f->first + f->n_sides; k++)
-            margin = poly_least(margin, c->side[k].off - brc_dot(c->side[k].m, q));
-    } else if ((foot->place & 3) == POLY_ON_EDGE) {
-        const struct poly_edge *e = &c->edge[index];
-        double t = poly_along_edge(c, index, q, along), length = brc_norm(along);
-        margin = poly_least(margin, poly_least(t, 1 - t) * length);
-        for (int k = 0; k < 2; k++) {
-            const struct poly_side *side = &c->side[e->side[k]];
-            margin = poly_least(margin, brc_dot(side->m, q) - side->off);
-        }
-    } else {
-        brc_sub(d, q, c->vertex[index]);
-        for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
-            const int32_t *end = c->end[c->star[k]];
-            brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
-            margin = poly_least(margin, -brc_dot(d, along) / brc_norm(along));
-        }
+    const double(*rm)[3] = of_b ? p->ra : p->rb;
+    const double *v = of_b ? p->vb[f->j] : p->va[f->i];
+    double q[3], out[3];
+    int32_t *feature = poly_remembered(f);
+    struct poly_closest at;
+    poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
+    *margin = 0;
+    if (rule == POLY_MERGED) {
+        poly_closest_walk(&at, c, q, *feature);
+        *margin = poly_closest_margin(c, &at, q);
+        *feature = at.feature;
+    } else if (!poly_closest_of_rule(&at, c, *feature, q, rule == POLY_STRICT,
+                                     p->contact_distance)) {
+        t->delta = -poly_path_to_face(c, *feature, q, rule, p->contact_distance);
+        return false;
+    } else if (rule == POLY_STRICT && poly_height(&c->face[*feature], q) > 0) {
+        *margin = poly_closest_margin(c, &at, q);
     }
-    return margin;
+    struct poly_geometry4 all;
+    brc_lanes place[3], normal[3], sign = brc_lanes_all(of_b ? 1 : -1);
+    poly_to_space(out, rm, at.n);
+    poly_all3(place, v);
+    poly_all3(normal, out);
+    brc_mask touches =
+        poly_vertex_geometry(&all, place, brc_lanes_all(at.s), normal, sign, p->contact_distance);
+    if (rule == POLY_MERGED && f->near[0] != POLY_NONE_NEAR)
+        fade_vertex(&all, p, of_b, place, sign, f->near);
+    poly_geometry_lane(t, &all, 0);
+    return touches[0];
 }
 
-double poly_find_foot(struct poly_foot *foot, const struct poly_core *c, const double q[3],
-                      int32_t place)
+/* --- edges ------------------------------------------------------------------------------------ */
+
+/* Parallel edges touch in the middle of the part where they face each other. */
+static void middle_of_parallel(brc_lanes *s, brc_lanes *t, const struct poly_crossings *x)
 {
-    poly_foot_walk(foot, c, q, place);
-    return poly_foot_margin(c, foot, q);
+    brc_lanes low = x->ra, high = x->ra + x->c * x->lb;
+    brc_lanes from = poly_clamp(brc_lanes_min(low, high), x->la);
+    brc_lanes to = poly_clamp(brc_lanes_max(low, high), x->la);
+    brc_lanes middle = 0.5 * (from + to);
+    *s = brc_lanes_pick(x->skew, *s, middle);
+    *t = brc_lanes_pick(x->skew, *t, poly_clamp(x->c * (middle - low), x->lb));
+}
+
+/* Edges of `closed`, where a closest point is at an end. */
+static bool touch_closed_edges(struct poly_geometry4 *t, const struct poly_pair *p,
+                               brc_lanes ends[4][3])
+{
+    struct poly_crossings x;
+    brc_lanes s, along, r[3];
+    poly_cross_edges(&x, ends);
+    poly_closest_on_edges(&s, &along, &x);
+    middle_of_parallel(&s, &along, &x);
+    brc_lanes d = poly_edge_distance(r, &x, s, along);
+    brc_mask touches = poly_overlap(t, d, r, 1 / d, p->contact_distance) & poly_positive(d);
+    poly_full_weight(t);
+    for (int k = 0; k < 3; k++)
+        t->x[k] = ends[0][k] + s * x.a[k] + 0.5 * r[k];
+    return touches[0];
+}
+
+static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
+                        const struct poly_feature *f, uint8_t *active, enum poly_rule rule)
+{
+    /* path_to_inside is right for paths up to the skin: none is longer than the reach */
+    const struct poly_lengths len = {p->contact_distance, p->fade, p->reach};
+    struct poly_geometry4 all;
+    brc_lanes ends[4][3], side = brc_lanes_all(*active == 1 ? 1 : *active == 2 ? -1 : 0);
+    for (int k = 0; k < 2; k++) {
+        poly_all3(ends[k], p->va[p->a.end[f->i][k]]);
+        poly_all3(ends[2 + k], p->vb[p->b.end[f->j][k]]);
+    }
+    brc_mask crosses =
+        poly_edge_geometry(&all, &len, ends, &side, brc_lanes_all(p->reach), rule == POLY_MERGED);
+    *active = !crosses[0] ? 0 : side[0] < 0 ? 2 : 1;
+    if (*active == 0 && rule == POLY_CLOSED && touch_closed_edges(&all, p, ends))
+        *active = 3;
+    poly_geometry_lane(t, &all, 0);
+    return *active != 0;
+}
+
+bool poly_find_contact(struct poly_geometry *t, const struct poly_pair *p, struct poly_feature *f,
+                       uint8_t *active, double *margin, enum poly_rule rule)
+{
+    *margin = 0;
+    if (f->kind == POLY_EDGES)
+        return touch_edges(t, p, f, active, rule);
+    *active = touch_vertex(t, p, f, margin, rule);
+    return *active;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernels of kernels.h for AVX2. */
+/* The kernels of kernels.inc.h for AVX2. */
 #pragma GCC target("avx2")
-#include "polyhedra/kernels.h"
+#include "polyhedra/kernels.inc.h"
 
 struct poly_kernels poly_kernels_avx2(const struct brc_sim *sim)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernels of kernels.h for AVX-512, in lanes of four. */
+/* The kernels of kernels.inc.h for AVX-512, in lanes of four. */
 #pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw")
-#include "polyhedra/kernels.h"
+#include "polyhedra/kernels.inc.h"
 
 struct poly_kernels poly_kernels_avx512(const struct brc_sim *sim)
 {

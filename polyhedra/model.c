@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "poly.h"
+#include "polyhedra/poly.h"
 
 #include "common/specimen/oblique.h"
 #include "common/base/simd.h"
@@ -12,11 +12,13 @@ static const struct brc_param param_list[] = {BRC_PARAM_LIST(POLY_PARAMS)};
 #undef BRC_OWNER
 
 #define BRC_OWNER struct poly_rows
-static const struct brc_field row_fields[] = {POLY_ROW_FIELDS(BRC_FIELD, BRC_FIELD3)};
+static const struct brc_field row_fields[] = {
+    POLY_ROW_FIELDS(BRC_FIELD, BRC_FIELD3, BRC_FIELD_RENAMED, BRC_FIELD3_RENAMED)};
 #undef BRC_OWNER
 
 #define BRC_OWNER struct poly_points
-static const struct brc_field point_fields[] = {POLY_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
+static const struct brc_field point_fields[] = {
+    POLY_POINT_FIELDS(BRC_FIELD, BRC_FIELD3, BRC_FIELD_RENAMED)};
 #undef BRC_OWNER
 
 /* Bonds stretch along the lines of centres: where facets are oblique to these, the stiffness by
@@ -45,7 +47,7 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
                  "polyhedra.radius = %g m is not below half of the mean grain size (%g m): nothing "
                  "would be left of the grains; a tenth of the grain size is usual",
                  p->radius, scale.size);
-    if (p->evaluation == POLY_CONDENSED && p->features == POLY_CLOSED)
+    if (p->evaluation == POLY_LINEARISED && p->features == POLY_CLOSED)
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
             "polyhedra.evaluation = condensed is not for polyhedra.features = closed, whose set of "
@@ -59,18 +61,18 @@ static int create(struct brc_sim *sim, void **state)
 {
     struct poly_params *p = sim->params;
     struct poly_scale scale;
-    if (p->evaluation == POLY_CONDENSED && poly_is_viscous(sim))
+    if (p->evaluation == POLY_LINEARISED && poly_is_viscous(sim))
         BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
                  "polyhedra.evaluation = condensed goes without viscosity: set polyhedra.gn and "
                  "polyhedra.gt to 0 1/s, or run.regime to quasi_static");
     struct poly_state *st = *state = brc_alloc(sim->ctx, 1, sizeof *st);
     if (st == NULL)
         return BRC_ERR_MEMORY;
-    size_t size = (sizeof *st->block + 63) / 64 * 64;
-    st->block = aligned_alloc(64, size);
-    if (st->block == NULL)
-        BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a block of rows", size);
-    memset(st->block, 0, size);
+    size_t size = (sizeof *st->batch + 63) / 64 * 64;
+    st->batch = aligned_alloc(64, size);
+    if (st->batch == NULL)
+        BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a batch of rows", size);
+    memset(st->batch, 0, size);
     st->is_scaled = isnan(p->kn);
     poly_scale_measure(&scale, &sim->specimen->facets);
     poly_scale_params(&scale, p);
@@ -86,10 +88,10 @@ static void release(void *state)
     poly_list_free(&st->list);
     brc_springs_free(&st->ahead);
     free(st->eroded);
-    free(st->world);
-    free(st->plane);
-    free(st->block);
-    free(st->turn);
+    free(st->global_vertices);
+    free(st->global_planes);
+    free(st->batch);
+    free(st->rotation);
     free(st);
 }
 

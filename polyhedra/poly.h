@@ -3,10 +3,7 @@
 #ifndef POLY_POLY_H
 #define POLY_POLY_H
 
-#include "block.h"
-#include "bond.h"
-#include "contact.h"
-#include "features.h"
+#include "polyhedra/batch.h"
 
 #include "common/engine/sim.h"
 
@@ -15,7 +12,7 @@
 /* Skin of the feature lists, in radii R: a smaller one lists fewer pairs, more often. */
 #define POLY_LIST_SKIN 0.2
 /* The same of the vertices listed for a platen. */
-#define POLY_WALL_SKIN 0.05
+#define POLY_PLATEN_SKIN 0.05
 
 #define POLY_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                                   \
     REAL(density, "kg/m3", "3000 kg/m3", "(0, inf)", "density of the whole cells (no porosity)")  \
@@ -71,7 +68,7 @@
 
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
 enum poly_area { POLY_AREA_ERODED, POLY_AREA_FACET };
-enum poly_evaluation { POLY_AUTO, POLY_LITERAL, POLY_CONDENSED };
+enum poly_evaluation { POLY_AUTO, POLY_LITERAL, POLY_LINEARISED };
 
 struct poly_params {
     BRC_PARAM_MEMBERS(POLY_PARAMS)
@@ -79,25 +76,29 @@ struct poly_params {
 
 /* Contact fields. Tables of work hold force and moment about a of the last step, for the trapezoid
  * rule of ledger.h; they are written only while the ledger is on. */
-#define POLY_ROW_FIELDS(SCALAR, VECTOR)                                                         \
-    SCALAR(double, wake, BRC_STATE, "m", "no features listed: travel of a and b to list anew")  \
-    SCALAR(double, room, BRC_STATE, "m", "features listed: relative path left to list anew")    \
-    SCALAR(int32_t, awake, BRC_STATE, "1", "points that are looked at; the others sleep")       \
-    SCALAR(double, calm, BRC_SCRATCH, "m", "items stay right while there is more room than so") \
-    SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")      \
-    VECTOR(double, bond, POLY_BOND, BRC_STATE, "m, 1, m2", "bond, in both frames (POLY_BOND)")  \
-    SCALAR(uint8_t, carried, BRC_STATE, "1", "1: condensed, carried along by its tangent")      \
-    VECTOR(double, shift, POLY_SHIFT, BRC_STATE, "m, 1",                                        \
-           "condensed: motion since all was computed (POLY_SHIFT)")                             \
-    VECTOR(double, held, 6, BRC_STATE, "N, N m", "condensed: force and moment about a then")    \
-    VECTOR(double, tangent, 36, BRC_STATE, "N m-1, N, N m", "condensed: their slope by motion") \
-    VECTOR(double, bond_old, 6, BRC_STATE, "N, N m", "bond force on b, its moment about a")     \
-    VECTOR(double, normal_old, 6, BRC_STATE, "N, N m",                                          \
-           "the same of the normal springs; condensed: of all springs and the bond")            \
+#define POLY_ROW_FIELDS(SCALAR, VECTOR, RENAMED, RENAMED3)                                       \
+    RENAMED(double, rebuild_at, wake, BRC_STATE, "m",                                            \
+            "no features listed: path of a and b to list anew")                                  \
+    RENAMED(double, skin_left, room, BRC_STATE, "m",                                             \
+            "features listed: relative path left to list anew")                                  \
+    SCALAR(int32_t, awake, BRC_STATE, "1", "points that are looked at; the others sleep")        \
+    SCALAR(double, stable_above, BRC_SCRATCH, "m",                                               \
+           "items stay right while there is more skin left than so")                             \
+    SCALAR(int32_t, ready, BRC_SCRATCH, "1", "the points that are awake have their items")       \
+    VECTOR(double, bond, POLY_BOND, BRC_STATE, "m, 1, m2", "bond, in both frames (POLY_BOND)")   \
+    RENAMED(uint8_t, is_linearised, carried, BRC_STATE, "1", "1: moved by its tangent")          \
+    RENAMED3(double, motion, shift, POLY_MOTION, BRC_STATE, "m, 1",                              \
+             "linearised: motion since all was computed (POLY_MOTION)")                          \
+    RENAMED3(double, linearised_force, held, 6, BRC_STATE, "N, N m",                             \
+             "linearised: force and moment about a then")                                        \
+    VECTOR(double, tangent, 36, BRC_STATE, "N m-1, N, N m", "linearised: their slope by motion") \
+    VECTOR(double, bond_old, 6, BRC_STATE, "N, N m", "bond force on b, its moment about a")      \
+    VECTOR(double, normal_old, 6, BRC_STATE, "N, N m",                                           \
+           "the same of the normal springs; linearised: of all springs and the bond")            \
     VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m", "the same of the viscous forces")
 
 struct poly_rows {
-    POLY_ROW_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+    POLY_ROW_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED, BRC_COLUMN3_RENAMED)
 };
 
 static inline double *poly_bond_area(const struct poly_rows *rows, size_t row)
@@ -111,27 +112,29 @@ static inline double *poly_bond_length(const struct poly_rows *rows, size_t row)
 }
 
 /* Points: feature pairs near enough to touch before the row is listed anew. */
-#define POLY_POINT_FIELDS(SCALAR, VECTOR)                                                        \
-    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")               \
-    SCALAR(uint8_t, active, BRC_STATE, "1",                                                      \
-           "0 apart, 1 in contact, 2 the same with edges whose "                                 \
-           "cross product points from b to a")                                                   \
-    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")            \
-    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                           \
-    VECTOR(int32_t, near, POLY_NEAR, BRC_STATE, "1",                                             \
-           "vertices that may lower the weight; -1: no more; -2 first: too many to name")        \
-    SCALAR(double, sleep, BRC_STATE, "m", "the pair cannot touch while its row has more room")   \
-    SCALAR(double, hold, BRC_STATE, "m",                                                         \
-           "vertices: the place is sure while the row has more room; edges: POLY_FADES or more") \
-    VECTOR(int32_t, item, POLY_ITEM, BRC_SCRATCH, "1", "what the touch is computed from")        \
-    VECTOR(double, spring, POLY_SPRING, BRC_STATE, "m, 1",                                       \
+#define POLY_POINT_FIELDS(SCALAR, VECTOR, RENAMED)                                         \
+    SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")         \
+    SCALAR(uint8_t, active, BRC_STATE, "1",                                                \
+           "0 apart, 1 in contact, 2 the same with edges whose "                           \
+           "cross product points from b to a")                                             \
+    SCALAR(int32_t, i, BRC_STATE, "1", "feature of a: vertex, face (or place), edge")      \
+    SCALAR(int32_t, j, BRC_STATE, "1", "feature of b")                                     \
+    VECTOR(int32_t, near, POLY_NEAR, BRC_STATE, "1",                                       \
+           "vertices that may lower the weight; -1: no more; -2 first: too many to name")  \
+    SCALAR(double, sleep, BRC_STATE, "m",                                                  \
+           "the pair cannot touch while its contact has more skin left")                   \
+    RENAMED(double, feature_valid_to, hold, BRC_STATE, "m",                                \
+            "vertices: the closest feature is sure while there is more skin left; edges: " \
+            "POLY_FADES or more")                                                          \
+    VECTOR(int32_t, item, POLY_ITEM, BRC_SCRATCH, "1", "what the touch is computed from")  \
+    VECTOR(double, spring, POLY_SPRING, BRC_STATE, "m, 1",                                 \
            "tangential displacement xi, eq 9; weight; normal from a to b; 0")
 
 /* edges that are apart, and can but touch with a weight that grows from 0 */
 #define POLY_FADES (-HUGE_VAL)
 
 struct poly_points {
-    POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+    POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED)
 };
 
 static inline double *poly_xi(const struct poly_points *points, size_t p)
@@ -160,17 +163,17 @@ struct poly_state {
     struct poly_shapes shapes;
     double (*eroded)[2]; /* m2, of each facet of the specimen: what either grain's core keeps */
     /* derived from the poses at each use */
-    double (*world)[3];       /* vertices of all cores in space */
-    double (*plane)[4];       /* planes of all faces in space: outward normal n, and n . x */
-    double (*turn)[3][3];     /* rotation matrix of each body, platens included */
-    struct poly_list list;    /* work space */
-    struct brc_springs ahead; /* work space of poly_foresee */
-    size_t n_removed;         /* facets that erosion removes on either side */
+    double (*global_vertices)[3]; /* vertices of all cores in space */
+    double (*global_planes)[4];   /* planes of all faces in space: outward normal n, and n . x */
+    double (*rotation)[3][3];     /* rotation matrix of each body, platens included */
+    struct poly_list list;        /* work space */
+    struct brc_springs ahead;     /* work space of poly_foresee */
+    size_t n_removed;             /* facets that erosion removes on either side */
     size_t n_bonds;
     double mean_area, mean_length; /* of the bonds */
     bool is_scaled;                /* K_n follows from kn_modulus */
     struct poly_kernels kernels;
-    struct poly_block *block; /* work space of the loop over pairs */
+    struct poly_batch *batch; /* work space of the loop over pairs */
 };
 
 static inline const struct poly_params *poly_params_of(const struct brc_sim *sim)
@@ -184,11 +187,11 @@ static inline bool poly_is_viscous(const struct brc_sim *sim)
     return sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
 }
 
-static inline bool poly_is_condensed(const struct brc_sim *sim)
+static inline bool poly_is_linearised(const struct brc_sim *sim)
 {
     const struct poly_params *p = poly_params_of(sim);
     bool is_fit = sim->run.regime != BRC_DYNAMIC && p->features != POLY_CLOSED;
-    return BRC_OPTION(p->evaluation == POLY_CONDENSED || (p->evaluation == POLY_AUTO && is_fit));
+    return BRC_OPTION(p->evaluation == POLY_LINEARISED || (p->evaluation == POLY_AUTO && is_fit));
 }
 
 /* Smaller one of the radii of two cores about their centres. */
@@ -197,9 +200,6 @@ static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32
     return poly_least(sim->bodies.bounding_radius[a], sim->bodies.bounding_radius[b]) -
            poly_params_of(sim)->radius;
 }
-
-/* Rotation matrices, core vertices and planes in space for the present poses. */
-void poly_world(const struct brc_sim *sim, const struct poly_state *st);
 
 /* scale.c: values that are `auto`, from the grains; what is given stays. A specimen without inner
  * facets counts as cubes of the mean volume. */
@@ -216,58 +216,63 @@ int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_neighbou
                      const struct brc_neighbours *platens);
 /* Lists the features of a row of pairs, or of platens. */
 int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row);
-int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row);
+int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row);
 /* The points of a row that are awake come first, sorted by feature; then those that sleep, sorted
  * by when they wake up. Brings in those that the row's room wakes. */
 void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
 /* A point that is awake and does not touch sleeps until its row has no more than `sleep` room. */
 void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
 
-/* points.c: lists the points of row i of the block that may touch; computes all that is listed. */
-void poly_list_points(struct poly_block *block, int32_t i);
-void poly_work_off(struct poly_block *block);
+/* points.c: lists the points of row i of the batch that may touch; computes all that is listed. */
+void poly_list_points(struct poly_batch *batch, int32_t i);
+void poly_work_off(struct poly_batch *batch);
 
-/* condense.c. Decides whether row i of the block may be condensed: then its tangent is found with
+/* linearise.c. Decides whether row i of the batch may be linearised: then its tangent is found with
  * its forces. */
-void poly_begin_tangent(struct poly_block *block, int32_t i);
-/* A row that has been computed literally, and whose springs all touch, is condensed until it has
+void poly_begin_tangent(struct poly_batch *batch, int32_t i);
+/* A row that has been computed literally, and whose springs all touch, is linearised until it has
  * moved by the path for which they stay what they are. */
-void poly_condense_row(struct poly_block *block, int32_t i);
-/* Where rows may be condensed, the works of bonds are not booked by themselves: what the bond of a
+void poly_linearise(struct poly_batch *batch, int32_t i);
+/* Where rows may be linearised, the works of bonds are not booked by themselves: what the bond of a
  * row has gained since it was computed last is part of the work of all that acts. */
 void poly_account_bond(struct brc_sim *sim, size_t row, double stored);
 
-/* forces.c, platens.c: the loops. */
+/* forces.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);
 void poly_platens(struct brc_sim *sim, void *state);
 /* erode.c: cells become eroded cores with the mass of the whole cell (no porosity). */
 int poly_shape(struct brc_sim *sim, void *state);
-/* A core vertex (in space) against a platen whose body is at `at`; a is the grain, b the platen. */
-bool poly_touch_platen(struct poly_touch *t, const double v[3], const struct brc_platen *platen,
-                       const double at[3], double radius);
-/* The hold of a grip, a bond without torsion (and, held axially, without shear). */
-void poly_hold_law(struct poly_bond_result *r, const struct brc_sim *sim,
-                   const struct poly_state *st, size_t row, struct poly_bond *bond);
 
-/* state.c: stored energy and springs, from state alone. */
+/* bond_of_contact.c. One bond, or the hold of a grip. */
+struct poly_bond {
+    double kn, kt, ktheta; /* N/m, N/m, N m */
+    double n[3], x[3];     /* mean normal from a to b, place */
+    double term[3];        /* of eq 15: tension, shear, torsion */
+    double energy;         /* J, stored */
+};
+/* After poly_pose_bodies; false where it is not intact. */
+bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
+                          const struct poly_state *st, const struct brc_contacts *c, size_t row);
+/* 0 tension, 1 shear, 2 torsion: the largest term of eq 15. */
+int poly_bond_mode(const struct poly_bond *bond);
+
+/* energy.c, springs.c: stored energy and springs, from state alone. */
 void poly_energy(const struct brc_sim *sim, const void *state, double stored[3]);
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
 /* Dynamic regime: the step bears that all listed features of a row close at once. */
-int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_wall);
+int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_platen);
 
-/* Two bodies as the feature functions want them; after poly_world. */
+/* pose.c. Rotation matrices, core vertices and planes in space for the present poses. */
+void poly_pose_bodies(const struct brc_sim *sim, const struct poly_state *st);
+/* Two bodies as the feature functions want them; after poly_pose_bodies. */
 void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct poly_state *st,
                   int32_t a, int32_t b);
-/* The halves of the bond of a row (of either set) in space; after poly_world. */
-void poly_pose_bond(struct poly_bond_pose *pose, const struct brc_contacts *c, size_t row,
-                    const struct poly_state *st, const struct brc_bodies *bodies, bool torsion);
-
 /* A feature contact that acts. */
 struct poly_active {
     int32_t a, b;      /* bodies */
     size_t row, point; /* of sim->pairs */
     struct poly_feature feature;
-    struct poly_touch touch;
+    struct poly_geometry geometry;
 };
 /* Visits the active feature contacts of all grain pairs, computed from the present poses. */
 void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,

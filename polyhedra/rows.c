@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which rows exist, and which feature pairs each of them watches. */
-#include "poly.h"
+#include "polyhedra/poly.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -226,7 +226,7 @@ static void copy_point(const struct poly_points *points, size_t to, size_t from)
     memcpy(points->near[to], points->near[from], sizeof points->near[from]);
     memcpy(points->item[to], points->item[from], sizeof points->item[from]);
     points->sleep[to] = points->sleep[from];
-    points->hold[to] = points->hold[from];
+    points->feature_valid_to[to] = points->feature_valid_to[from];
     memcpy(points->spring[to], points->spring[from], sizeof points->spring[from]);
 }
 
@@ -239,7 +239,7 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
             continue;
         if (kept < p)
             copy_point(points, kept, p);
-        points->hold[kept++] = HUGE_VAL;
+        points->feature_valid_to[kept++] = HUGE_VAL;
     }
     return kept - first;
 }
@@ -252,7 +252,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     points->j[p] = f->j;
     memcpy(points->near[p], f->near, sizeof f->near);
     points->sleep[p] = sleep;
-    points->hold[p] = hold;
+    points->feature_valid_to[p] = hold;
     points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
     points->active[p] = 0;
     memset(points->spring[p], 0, sizeof points->spring[p]);
@@ -277,13 +277,13 @@ void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
     struct poly_rows *rows = c->model_columns;
     size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
     size_t next = first + (size_t)rows->awake[row];
-    for (; next < end && rows->room[row] <= points->sleep[next]; next++) {
+    for (; next < end && rows->skin_left[row] <= points->sleep[next]; next++) {
         struct poly_feature f = poly_point(points, next);
-        double hold = points->hold[next];
+        double hold = points->feature_valid_to[next];
         size_t p = next;
         for (; p > first && comes_before(&f, points, p - 1, merged); p--)
             copy_point(points, p, p - 1);
-        set_point(points, p, &f, rows->room[row], hold);
+        set_point(points, p, &f, rows->skin_left[row], hold);
         rows->ready[row] = 0;
     }
     rows->awake[row] = (int32_t)(next - first);
@@ -294,7 +294,7 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
     const struct poly_points *points = c->point_columns;
     struct poly_rows *rows = c->model_columns;
     struct poly_feature f = poly_point(points, p);
-    double hold = points->hold[p];
+    double hold = points->feature_valid_to[p];
     size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
     size_t awake = (size_t)c->p0[row] + (size_t)rows->awake[row]--;
     /* the others that are awake close up; those that sleep are sorted by when they wake up */
@@ -322,7 +322,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
                           const struct poly_list *list, bool merged)
 {
     struct poly_rows *rows = c->model_columns;
-    double room = rows->room[row];
+    double room = rows->skin_left[row];
     if (list->n > 1)
         qsort(list->feature, list->n, sizeof *list->feature, compare_features);
     size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
@@ -357,27 +357,27 @@ int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
     BRC_TRY(st->kernels.list(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
                              POLY_LIST_SKIN * params->radius, &allowance));
-    rows->wake[row] =
+    rows->rebuild_at[row] =
         sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] + allowance;
-    rows->room[row] = allowance;
+    rows->skin_left[row] = allowance;
     return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);
 }
 
 /* Vertices of the grain within the skin of the platen; the lowest of the others is the allowance.
  */
-int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
+int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row)
 {
     struct brc_contacts *c = &sim->platens;
     struct poly_rows *rows = c->model_columns;
     size_t a = (size_t)c->a[row], first = st->shapes.vertex_first[a];
     size_t n = st->shapes.vertex_first[a + 1] - first;
-    double radius = poly_params_of(sim)->radius, reach = (1 + POLY_WALL_SKIN) * radius;
+    double radius = poly_params_of(sim)->radius, reach = (1 + POLY_PLATEN_SKIN) * radius;
     double allowance = HUGE_VAL;
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
     st->list.n = 0;
     for (size_t v = 0; v < n; v++) {
         double d[3];
-        brc_sub(d, st->world[first + v], sim->bodies.x[c->b[row]]);
+        brc_sub(d, st->global_vertices[first + v], sim->bodies.x[c->b[row]]);
         double height = brc_dot(d, platen->n);
         struct poly_feature f = {.i = (int32_t)v, .j = 0, .kind = POLY_VERTEX_A};
         if (height < reach)
@@ -385,6 +385,7 @@ int poly_list_wall(struct brc_sim *sim, struct poly_state *st, size_t row)
         else
             allowance = fmin(allowance, height - radius);
     }
-    rows->wake[row] = sim->bodies.path_length[a] + sim->bodies.path_length[c->b[row]] + allowance;
+    rows->rebuild_at[row] =
+        sim->bodies.path_length[a] + sim->bodies.path_length[c->b[row]] + allowance;
     return replace_points(sim->ctx, c, row, &st->list, false);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lengths and stiffnesses that follow from the grains, so that one set of values serves specimens
  * of every size. */
-#include "poly.h"
+#include "polyhedra/poly.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "shape.h"
+#include "polyhedra/shape.h"
 
 #include "common/geometry/vec.h"
 
@@ -28,14 +28,14 @@ void poly_shapes_free(struct poly_shapes *s)
 /* Room for n items behind *array; the capacity doubles. */
 static int reserve(struct brc_context *ctx, void *array, size_t *cap, size_t n, size_t size)
 {
-    void **block = array;
+    void **batch = array;
     if (n <= *cap)
         return 0;
     size_t wanted = *cap * 2 > n ? *cap * 2 : n + 16;
-    void *grown = brc_realloc(ctx, *block, wanted, size);
+    void *grown = brc_realloc(ctx, *batch, wanted, size);
     if (grown == NULL)
         return BRC_ERR_MEMORY;
-    *block = grown;
+    *batch = grown;
     *cap = wanted;
     return 0;
 }

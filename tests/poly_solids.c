@@ -90,8 +90,8 @@ struct poly_pair solid_pair(const struct poly_shapes *shapes, size_t a, const st
                               .rb = (const double(*)[3])pb->m,
                               .va = (const double(*)[3])pa->v,
                               .vb = (const double(*)[3])pb->v,
-                              .rest = 2 * radius,
-                              .ell = radius,
+                              .contact_distance = 2 * radius,
+                              .fade = radius,
                               .reach =
                                   fmin(poly_shapes_reach(shapes, a), poly_shapes_reach(shapes, b))};
 }

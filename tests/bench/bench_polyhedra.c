@@ -197,7 +197,7 @@ static void remember(struct old_rows *old, const struct brc_sim *sim)
     for (size_t i = 0; i < c->n; i++) {
         old->pair[i][0] = c->a[i];
         old->pair[i][1] = c->b[i];
-        old->wake[i] = rows->wake[i];
+        old->wake[i] = rows->rebuild_at[i];
     }
 }
 
@@ -213,7 +213,7 @@ static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool
                               (old->pair[k][0] == c->a[i] && old->pair[k][1] < c->b[i])))
             k++;
         bool same = k < old->n && old->pair[k][0] == c->a[i] && old->pair[k][1] == c->b[i];
-        if (!same || old->wake[k] != rows->wake[i])
+        if (!same || old->wake[k] != rows->rebuild_at[i])
             listed[n++] = i;
     }
     double begin = cpu_seconds();

@@ -42,7 +42,7 @@ static size_t count_held(const struct fixture *f)
     const struct poly_rows *rows = f->sim.pairs.model_columns;
     size_t n = 0;
     for (size_t i = 0; i < f->sim.pairs.n; i++)
-        n += rows->carried[i];
+        n += rows->is_linearised[i];
     return n;
 }
 
@@ -90,7 +90,7 @@ struct changes {
 
 static void note_weight(void *user, const struct poly_active *active)
 {
-    ((struct changes *)user)->weight[active->point] = active->touch.weight;
+    ((struct changes *)user)->weight[active->point] = active->geometry.weight;
 }
 
 static void look_at_row(struct changes *changes, const struct brc_contacts *c, size_t row)
@@ -114,7 +114,7 @@ static void look_at_springs(struct changes *changes, const struct fixture *f)
     changes->weight = test_calloc(c->points.n, sizeof *changes->weight);
     poly_each_active(&f->sim, f->sim.state, note_weight, changes);
     for (size_t i = 0; i < c->n; i++)
-        if (rows->carried[i])
+        if (rows->is_linearised[i])
             look_at_row(changes, c, i);
     test_free(changes->weight);
 }
@@ -197,12 +197,13 @@ static void tangent_is_the_slope(void **state)
     double(*held)[6] = malloc(c->n * sizeof *held);
     bool *was_held = malloc(c->n * sizeof *was_held);
     for (size_t i = 0; i < c->n; i++) {
-        const double *shift = rows->shift[i];
-        was_held[i] = rows->carried[i] && shift[POLY_SHIFT_PATH] > 0.3 * shift[POLY_SHIFT_END] &&
-                      shift[POLY_SHIFT_PATH] < 0.9 * shift[POLY_SHIFT_END];
+        const double *shift = rows->motion[i];
+        was_held[i] = rows->is_linearised[i] &&
+                      shift[POLY_MOTION_PATH] > 0.3 * shift[POLY_MOTION_END] &&
+                      shift[POLY_MOTION_PATH] < 0.9 * shift[POLY_MOTION_END];
         memcpy(condensed[i], c->f[i], sizeof condensed[i]);
-        memcpy(held[i], rows->held[i], sizeof held[i]);
-        rows->carried[i] = 0;
+        memcpy(held[i], rows->linearised_force[i], sizeof held[i]);
+        rows->is_linearised[i] = 0;
     }
     double now[3];
     fixture_carry(f, 0);

@@ -71,12 +71,14 @@ static void count_pair(struct count *c, const struct poly_pair *pair, enum poly_
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
     double allowance;
-    CHECK_OK(&ctx, poly_list_features(&ctx, list, pair, rule, 0.05 * pair->rest, &allowance));
+    CHECK_OK(&ctx,
+             poly_list_features(&ctx, list, pair, rule, 0.05 * pair->contact_distance, &allowance));
     for (size_t k = 0; k < list->n; k++) {
-        struct poly_touch t;
+        struct poly_geometry t;
         struct poly_feature f = list->feature[k];
         uint8_t active = 0;
-        if (!poly_touch(&t, pair, &f, poly_remembered(&f), &active, rule))
+        double margin;
+        if (!poly_find_contact(&t, pair, &f, &active, &margin, rule))
             continue;
         if (rule == POLY_STRICT) {
             c->vertex_face += f.kind != POLY_EDGES;
@@ -84,7 +86,8 @@ static void count_pair(struct count *c, const struct poly_pair *pair, enum poly_
         } else {
             c->merged_vertices += f.kind != POLY_EDGES;
             c->merged_weight += t.weight;
-            c->merged_energy += 0.5 * t.weight * t.delta * t.delta / (pair->rest * pair->rest);
+            c->merged_energy += 0.5 * t.weight * t.delta * t.delta /
+                                (pair->contact_distance * pair->contact_distance);
         }
     }
 }

@@ -110,7 +110,7 @@ static bool place_duel(struct fixture *f, struct duel *d)
     b->x[1][0] = 10; /* apart first, so that nothing is remembered of the last trial */
     struct poly_rows *rows = f->sim.pairs.model_columns;
     for (size_t row = 0; row < f->sim.pairs.n; row++)
-        rows->room[row] = 0; /* a jump is not a path */
+        rows->skin_left[row] = 0; /* a jump is not a path */
     fixture_forces(f);
     fixture_list(f);
     assert_int_equal(f->sim.pairs.n, 0);

@@ -39,21 +39,21 @@ static void test_walk_agrees_with_search(void **state)
         double p[3], h;
         for (int k = 0; k < 3; k++)
             p[k] = 3.2 * (solid_uniform(&seed) - 0.5);
-        struct poly_foot walk, search, ahead;
+        struct poly_closest walk, search, ahead;
         int32_t start = (int32_t)(solid_uniform(&seed) * c.n_faces);
-        poly_foot_walk(&walk, &c, p, poly_place(start, POLY_ON_FACE));
+        poly_closest_walk(&walk, &c, p, poly_feature_code(start, POLY_ON_FACE));
         int32_t high = poly_highest(&c, p, &h);
         if (h <= 0)
-            poly_foot_face(&search, &c, high, h);
+            poly_on_face(&search, &c, high, h);
         else
-            poly_foot_search(&search, &c, p);
+            poly_closest_search(&search, &c, p);
         CHECK_NEAR(walk.s, search.s, 1e-13, 1e-12);
         CHECK_NEAR(brc_norm(walk.n), 1, 1e-12, 0);
         /* any other start */
-        poly_foot_walk(&ahead, &c, p, poly_place(trial % c.n_vertices, POLY_ON_VERTEX));
+        poly_closest_walk(&ahead, &c, p, poly_feature_code(trial % c.n_vertices, POLY_ON_VERTEX));
         CHECK_NEAR(ahead.s, walk.s, 1e-13, 1e-12);
         brc_axpy(p, 1e-7, walk.n);
-        poly_foot_walk(&ahead, &c, p, walk.place);
+        poly_closest_walk(&ahead, &c, p, walk.feature);
         CHECK_NEAR(ahead.s - walk.s, 1e-7, 1e-12, 0);
     }
 }
@@ -66,15 +66,15 @@ static void test_signed_inside(void **state)
     const double half[3] = {1, 1, 1}, p[3] = {0.2, 0.1, 0.9};
     CHECK_OK(&ctx, solid_box(&ctx, &s, half));
     struct poly_core c = poly_core_of(&s, 0);
-    struct poly_foot foot;
+    struct poly_closest closest;
     for (int32_t f = 0; f < c.n_faces; f++) {
-        poly_foot_walk(&foot, &c, p, poly_place(f, POLY_ON_FACE));
-        CHECK_NEAR(foot.s, -0.1, 1e-15, 0);
-        CHECK_NEAR(foot.n[2], 1, 1e-15, 0);
-        bool touches = poly_foot_on_face(&foot, &c, f, p, POLY_STRICT, 0.2);
+        poly_closest_walk(&closest, &c, p, poly_feature_code(f, POLY_ON_FACE));
+        CHECK_NEAR(closest.s, -0.1, 1e-15, 0);
+        CHECK_NEAR(closest.n[2], 1, 1e-15, 0);
+        bool touches = poly_closest_of_rule(&closest, &c, f, p, true, 0.2);
         assert_int_equal(touches, c.face[f].n[2] > 0.5);
         if (touches)
-            CHECK_NEAR(foot.s, -0.1, 1e-15, 0);
+            CHECK_NEAR(closest.s, -0.1, 1e-15, 0);
     }
     poly_shapes_free(&s);
 }
@@ -86,6 +86,22 @@ static void random_edges(double e[4][3], unsigned *seed)
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 3; k++)
             e[i][k] = solid_uniform(seed) - 0.5;
+}
+
+static void in_all_lanes(brc_lanes all[4][3], const double (*e)[3])
+{
+    for (int i = 0; i < 4; i++)
+        poly_all3(all[i], e[i]);
+}
+
+/* Distance of the closed edges; of parallel ones any closest points will do. */
+static double edge_distance(double e[4][3])
+{
+    struct poly_crossings x;
+    brc_lanes all[4][3];
+    in_all_lanes(all, (const double(*)[3])e);
+    poly_cross_edges(&x, all);
+    return poly_edge_gap(&x, 0)[0];
 }
 
 static double sampled_distance(double e[4][3])
@@ -114,7 +130,7 @@ static void test_edges_against_sampling(void **state)
         if (trial % 4 == 0) /* parallel, either sense */
             for (int k = 0; k < 3; k++)
                 e[3][k] = e[2][k] + (trial % 8 ? 0.7 : -1.3) * (e[1][k] - e[0][k]);
-        double d = poly_edge_distance(e[0], e[1], e[2], e[3]), sampled = sampled_distance(e);
+        double d = edge_distance(e), sampled = sampled_distance(e);
         assert_true(d <= sampled + 1e-12);
         CHECK_NEAR(d, sampled, 0.01, 0);
     }
@@ -131,13 +147,14 @@ static void test_parallel_is_relative(void **state)
                                 {size, 0, 0},
                                 {-size, -1e-4 * size, 0.1 * size},
                                 {size, 1e-4 * size, 0.1 * size}};
-        struct poly_lines lines;
-        struct poly_crossing x;
-        assert_true(poly_cross_lines(&lines, e[0], e[1], e[2], e[3]));
-        assert_true(poly_feet_inside(&lines));
-        poly_cross_edges(&x, &lines);
-        CHECK_NEAR(x.ta, size, 0, 1e-6);
-        CHECK_NEAR(fabs(x.d), 0.1 * size, 0, 1e-12);
+        struct poly_crossings x;
+        brc_lanes all[4][3];
+        in_all_lanes(all, e);
+        assert_true(poly_cross_edges(&x, all)[0]);
+        assert_true(x.skew[0]);
+        double d = x.rm[0] * sqrt(x.per_m[0]);
+        CHECK_NEAR(x.ta[0], size, 0, 1e-6);
+        CHECK_NEAR(fabs(d), 0.1 * size, 0, 1e-12);
     }
 }
 
@@ -153,12 +170,13 @@ static double pair_energy(const struct poly_pair *p, enum poly_rule rule, double
     brc_set(f, 0, 0, 0);
     brc_set(m, 0, 0, 0);
     *count = 0;
-    CHECK_OK(&ctx, poly_list_features(&ctx, &l, p, rule, 0.05 * p->rest, &allowance));
+    CHECK_OK(&ctx, poly_list_features(&ctx, &l, p, rule, 0.05 * p->contact_distance, &allowance));
     for (size_t k = 0; k < l.n; k++) {
-        struct poly_touch t;
+        struct poly_geometry t;
         struct poly_feature feature = l.feature[k];
         uint8_t active = 0;
-        if (!poly_touch(&t, p, &feature, poly_remembered(&feature), &active, rule))
+        double margin;
+        if (!poly_find_contact(&t, p, &feature, &active, &margin, rule))
             continue;
         double push[3], arm[3], moment[3];
         brc_scale(push, t.n, t.weight * t.delta);
@@ -331,9 +349,10 @@ static int coincident_count(enum poly_rule rule, double shift, double *weight)
     CHECK_OK(&ctx, poly_list_features(&ctx, &l, &p, rule, 0.01, &allowance));
     *weight = 0;
     for (size_t k = 0; k < l.n; k++) {
-        struct poly_touch t;
+        struct poly_geometry t;
         uint8_t active = 0;
-        if (poly_touch(&t, &p, &l.feature[k], poly_remembered(&l.feature[k]), &active, rule)) {
+        double margin;
+        if (poly_find_contact(&t, &p, &l.feature[k], &active, &margin, rule)) {
             count++;
             *weight += t.weight;
         }
@@ -422,9 +441,10 @@ static void test_lists_are_exact(void **state)
         for (size_t k = 0; k < all.n + near.n; k++) {
             struct poly_feature x = k < all.n ? all.feature[k] : near.feature[k - all.n];
             struct poly_feature start = x;
-            struct poly_touch t;
+            struct poly_geometry t;
             uint8_t active = 0;
-            bool touches = poly_touch(&t, &p, &x, poly_remembered(&x), &active, rule);
+            double margin;
+            bool touches = poly_find_contact(&t, &p, &x, &active, &margin, rule);
             n_active += touches;
             assert_true(!touches || is_listed(&near, &start, rule));
             if (k >= all.n && start.free > path) {

@@ -2,17 +2,63 @@
 /* Bond and collision law of the polyhedra model against hand values. */
 #include "tests/near.h"
 
-#include "polyhedra/bond.h"
-#include "polyhedra/contact.h"
+#include "polyhedra/poly.h"
 
-static const struct poly_bond bond = {
-    .kn = 100, .kt = 40, .ktheta = 7, .length = 0.5, .eps_th = 0.02, .theta_th = 0.05};
+/* The laws are written for four contacts side by side: here they are all the same, and one is read.
+ */
+struct pose {
+    double pa[3], pb[3]; /* material points on a and b */
+    double na[3], nb[3]; /* outward normals of the two faces */
+    double ta[3], tb[3]; /* tangents that were one at the start */
+};
+
+struct result {
+    double n[3], f[3], m, x[3], term[3], energy, use;
+};
+
+static double theta_th = 0.05;
+
+static void bond_law(struct result *r, const struct pose *p, bool torsion)
+{
+    struct poly_bonds4 bonds = {.kn = brc_lanes_all(100),
+                                .kt = brc_lanes_all(40),
+                                .ktheta = brc_lanes_all(torsion ? 7 : 0),
+                                .length = brc_lanes_all(0.5),
+                                .eps_th = 0.02,
+                                .theta_th = theta_th};
+    struct poly_bond_pose4 pose = {.twist = brc_lanes_all(0)};
+    struct poly_bond_state4 all;
+    brc_lanes na[3], nb[3], ta[3], tb[3];
+    poly_all3(pose.pa, p->pa);
+    poly_all3(pose.pb, p->pb);
+    poly_all3(na, p->na);
+    poly_all3(nb, p->nb);
+    poly_all3(ta, p->ta);
+    poly_all3(tb, p->tb);
+    poly_mean_normal(pose.n, na, nb);
+    if (torsion)
+        pose.twist = poly_twist(pose.n, ta, tb, brc_lanes_first(BRC_LANES));
+    poly_bond_law(&all, &bonds, &pose);
+    poly_lane3(r->n, pose.n, 0);
+    poly_lane3(r->f, all.f, 0);
+    poly_lane3(r->x, all.arm, 0);
+    poly_lane3(r->term, all.term, 0);
+    r->m = all.m[0];
+    r->energy = all.energy[0];
+    r->use = poly_bond_use(&all)[0];
+}
+
+static int mode(const struct result *r)
+{
+    struct poly_bond bond = {.energy = r->energy};
+    brc_copy(bond.term, r->term);
+    return poly_bond_mode(&bond);
+}
 
 /* Two faces in contact at the origin, a below b. */
-static struct poly_bond_pose pose_at_rest(void)
+static struct pose pose_at_rest(void)
 {
-    return (struct poly_bond_pose){
-        .na = {0, 0, 1}, .nb = {0, 0, -1}, .ta = {1, 0, 0}, .tb = {1, 0, 0}};
+    return (struct pose){.na = {0, 0, 1}, .nb = {0, 0, -1}, .ta = {1, 0, 0}, .tb = {1, 0, 0}};
 }
 
 static void turn(double v[3], const double q[4])
@@ -22,7 +68,7 @@ static void turn(double v[3], const double q[4])
     brc_copy(v, r);
 }
 
-static void turn_pose(struct poly_bond_pose *p, const double q[4])
+static void turn_pose(struct pose *p, const double q[4])
 {
     double *vectors[] = {p->pa, p->pb, p->na, p->nb, p->ta, p->tb};
     for (int i = 0; i < 6; i++)
@@ -32,20 +78,20 @@ static void turn_pose(struct poly_bond_pose *p, const double q[4])
 static void test_bond_values(void **state)
 {
     (void)state;
-    struct poly_bond_pose p = pose_at_rest();
-    struct poly_bond_result r;
+    struct pose p = pose_at_rest();
+    struct result r;
     brc_set(p.pb, 0.003, 0, 0.002);
-    poly_bond_law(&r, &bond, &p, true);
+    bond_law(&r, &p, true);
     CHECK_NEAR_ARRAY(r.n, ((double[]){0, 0, 1}), 3, 1e-15, 0);
     CHECK_NEAR_ARRAY(r.f, ((double[]){-0.12, 0, -0.2}), 3, 1e-15, 0);
     CHECK_NEAR_ARRAY(r.x, ((double[]){0.0015, 0, 0.001}), 3, 1e-15, 0);
     CHECK_NEAR(r.energy, 0.5 * (100 * 4e-6 + 40 * 9e-6), 1e-15, 0);
     CHECK_NEAR_ARRAY(r.term, ((double[]){0.2, 0.3, 0}), 3, 1e-14, 0);
-    assert_false(poly_bond_breaks(&r));
-    assert_int_equal(poly_bond_mode(&r), 1);
+    assert_false(r.use > 1);
+    assert_int_equal(mode(&r), 1);
     /* closed: the ramp of eq 12, in force, energy and eq 15 */
     brc_set(p.pb, 0.003, 0, -0.02);
-    poly_bond_law(&r, &bond, &p, true);
+    bond_law(&r, &p, true);
     CHECK_NEAR_ARRAY(r.f, ((double[]){-0.12, 0, 0}), 3, 1e-15, 0);
     CHECK_NEAR(r.energy, 0.5 * 40 * 9e-6, 1e-15, 0);
     CHECK_NEAR(r.term[0], 0, 0, 0);
@@ -54,57 +100,57 @@ static void test_bond_values(void **state)
 static void test_torsion(void **state)
 {
     (void)state;
-    struct poly_bond_pose p = pose_at_rest();
-    struct poly_bond_result r;
+    struct pose p = pose_at_rest();
+    struct result r;
     brc_set(p.tb, cos(0.03), sin(0.03), 0);
-    poly_bond_law(&r, &bond, &p, true);
+    bond_law(&r, &p, true);
     CHECK_NEAR(r.m, -7 * 0.03, 1e-15, 0);
     CHECK_NEAR(r.energy, 0.5 * 7 * 9e-4, 1e-15, 0);
     CHECK_NEAR(r.term[2], 0.6, 1e-13, 0);
-    assert_int_equal(poly_bond_mode(&r), 2);
-    poly_bond_law(&r, &bond, &p, false);
+    assert_int_equal(mode(&r), 2);
+    bond_law(&r, &p, false);
     CHECK_NEAR(r.m, 0, 0, 0);
     CHECK_NEAR(r.term[2], 0, 0, 0);
-    struct poly_bond unlimited = bond;
-    unlimited.theta_th = HUGE_VAL;
-    poly_bond_law(&r, &unlimited, &p, true);
+    theta_th = HUGE_VAL;
+    bond_law(&r, &p, true);
+    theta_th = 0.05;
     CHECK_NEAR(r.term[2], 0, 0, 0);
 }
 
 static void test_breaking(void **state)
 {
     (void)state;
-    struct poly_bond_pose p = pose_at_rest();
-    struct poly_bond_result r;
+    struct pose p = pose_at_rest();
+    struct result r;
     brc_set(p.pb, 0.004, 0, 0.0059);
-    poly_bond_law(&r, &bond, &p, true);
-    assert_false(poly_bond_breaks(&r));
+    bond_law(&r, &p, true);
+    assert_false(r.use > 1);
     brc_set(p.pb, 0.004, 0, 0.0061);
-    poly_bond_law(&r, &bond, &p, true);
-    assert_true(poly_bond_breaks(&r));
-    assert_int_equal(poly_bond_mode(&r), 0);
+    bond_law(&r, &p, true);
+    assert_true(r.use > 1);
+    assert_int_equal(mode(&r), 0);
     /* the sum of the three terms */
     brc_set(p.pb, 0.004, 0, 0.004);
     brc_set(p.tb, cos(0.0105), sin(0.0105), 0);
-    poly_bond_law(&r, &bond, &p, true);
-    assert_true(poly_bond_breaks(&r));
+    bond_law(&r, &p, true);
+    assert_true(r.use > 1);
 }
 
 /* A rigid rotation of the pair turns the force with it and changes nothing else. */
 static void test_bond_is_objective(void **state)
 {
     (void)state;
-    struct poly_bond_pose p = pose_at_rest(), turned;
-    struct poly_bond_result r, s;
+    struct pose p = pose_at_rest(), turned;
+    struct result r, s;
     const double phi[3] = {1.1, -2, 0.7};
     double q[4], f[3];
     brc_set(p.pb, 0.003, -0.001, 0.002);
     brc_set(p.tb, cos(0.03), sin(0.03), 0);
-    poly_bond_law(&r, &bond, &p, true);
+    bond_law(&r, &p, true);
     brc_quat_from_rotation(q, phi);
     turned = p;
     turn_pose(&turned, q);
-    poly_bond_law(&s, &bond, &turned, true);
+    bond_law(&s, &turned, true);
     brc_quat_rotate(f, q, r.f);
     CHECK_NEAR_ARRAY(s.f, f, 3, 1e-15, 0);
     CHECK_NEAR(s.m, r.m, 1e-14, 0);
@@ -112,7 +158,7 @@ static void test_bond_is_objective(void **state)
     /* at rest: no force at any angle */
     turned = pose_at_rest();
     turn_pose(&turned, q);
-    poly_bond_law(&s, &bond, &turned, true);
+    bond_law(&s, &turned, true);
     CHECK_NEAR(brc_norm(s.f), 0, 0, 0);
     CHECK_NEAR(s.m, 0, 1e-14, 0);
 }
@@ -125,20 +171,67 @@ static void test_pair_stiffness(void **state)
     CHECK_NEAR(poly_pair_stiffness(0, 0), 0, 0, 0);
 }
 
+static void slide(double xi[3], const double n[3], const double du[3], double limit)
+{
+    brc_lanes all[3], normal[3], slip[3];
+    poly_all3(all, xi);
+    poly_all3(normal, n);
+    poly_all3(slip, du);
+    poly_slide_spring(all, normal, slip, brc_lanes_all(limit));
+    poly_lane3(xi, all, 0);
+}
+
+static void turn_spring(double xi[3], const double n_old[3], const double n[3], double twirl)
+{
+    brc_lanes all[3], before[3], now[3];
+    poly_all3(all, xi);
+    poly_all3(before, n_old);
+    poly_all3(now, n);
+    poly_turn_spring(all, before, now, brc_lanes_all(0.5 * twirl));
+    poly_lane3(xi, all, 0);
+}
+
+/* Viscosities 10 and 4 along and across n, with a normal force of 30. */
+static void viscous(double f[3], const double n[3], const double u[3])
+{
+    struct poly_geometry4 t = {.delta = brc_lanes_all(0.3), .weight = brc_lanes_all(1)};
+    brc_lanes all[3], slip[3];
+    poly_all3(t.n, n);
+    poly_all3(slip, u);
+    poly_viscous_force(all, &t, 100, brc_lanes_all(10), brc_lanes_all(4), slip);
+    poly_lane3(f, all, 0);
+}
+
+static double vertex_weight(const double v[3], const double u[3], double contact_distance,
+                            double fade)
+{
+    const struct poly_lengths len = {.contact_distance = contact_distance, .fade = fade};
+    struct poly_geometry4 t = {.delta = brc_lanes_all(0)};
+    struct poly_fading f;
+    brc_lanes at[3], other[3];
+    poly_all3(at, v);
+    poly_all3(other, u);
+    poly_sub3(other, at, other);
+    poly_fading_begin(&f);
+    poly_fading_add(&f, other, brc_lanes_first(BRC_LANES), &len);
+    poly_weigh_vertex(&t, at, brc_lanes_all(1), &f);
+    return t.weight[0];
+}
+
 static void test_friction(void **state)
 {
     (void)state;
     const double n[3] = {0, 0, 1};
     double xi[3] = {0, 0, 0};
-    poly_slide(xi, n, (double[]){3e-3, 0, 9}, 0.01);
+    slide(xi, n, (double[]){3e-3, 0, 9}, 0.01);
     CHECK_NEAR_ARRAY(xi, ((double[]){3e-3, 0, 0}), 3, 1e-17, 0);
-    poly_slide(xi, n, (double[]){0, 4e-3, 0}, 0.01);
+    slide(xi, n, (double[]){0, 4e-3, 0}, 0.01);
     CHECK_NEAR_ARRAY(xi, ((double[]){3e-3, 4e-3, 0}), 3, 1e-17, 0);
     /* capped along xi, and the capped value stays: going back acts at once */
-    poly_slide(xi, n, (double[]){3, 4, 0}, 0.01);
+    slide(xi, n, (double[]){3, 4, 0}, 0.01);
     CHECK_NEAR_ARRAY(xi, ((double[]){6e-3, 8e-3, 0}), 3, 1e-5, 0);
     CHECK_NEAR(brc_norm(xi), 0.01, 1e-17, 0);
-    poly_slide(xi, n, (double[]){-6e-3, 0, 0}, 0.01);
+    slide(xi, n, (double[]){-6e-3, 0, 0}, 0.01);
     CHECK_NEAR(brc_norm(xi), 8e-3, 1e-5, 0);
 }
 
@@ -156,7 +249,7 @@ static void test_turning(void **state)
         brc_quat_from_rotation(q, phi);
         brc_quat_rotate(n_new, q, n_new);
         brc_copy(n, n_new);
-        poly_turn(xi, n_old, n, brc_dot(w, n) / steps);
+        turn_spring(xi, n_old, n, brc_dot(w, n) / steps);
         CHECK_NEAR(brc_norm(xi), sqrt(5) * 1e-3, 1e-15, 1e-9);
     }
     brc_quat_rotate(expected, q, (double[]){1e-3, 2e-3, 0});
@@ -168,34 +261,35 @@ static void test_viscous(void **state)
     (void)state;
     const double n[3] = {0, 0, 1};
     double f[3];
-    poly_viscous(f, n, (double[]){0.5, 0, -2}, 10, 4, 30);
+    viscous(f, n, (double[]){0.5, 0, -2});
     CHECK_NEAR_ARRAY(f, ((double[]){-2, 0, 20}), 3, 1e-15, 0);
     /* apart: never more than the elastic force */
-    poly_viscous(f, n, (double[]){0, 0, 2}, 10, 4, 30);
+    viscous(f, n, (double[]){0, 0, 2});
     CHECK_NEAR(f[2], -20, 1e-15, 0);
-    poly_viscous(f, n, (double[]){0, 0, 5}, 10, 4, 30);
+    viscous(f, n, (double[]){0, 0, 5});
     CHECK_NEAR(f[2], -30, 1e-15, 0);
 }
 
 static void test_weights(void **state)
 {
     (void)state;
-    double slope, grad[3];
-    const double u[1][3] = {{0, 0, 0}}, rest = 0.2, ell = 0.1;
-    CHECK_NEAR(poly_smooth(-1, &slope), 0, 0, 0);
-    CHECK_NEAR(poly_smooth(0.5, &slope), 0.5, 1e-15, 0);
-    CHECK_NEAR(slope, 1.5, 1e-15, 0);
-    CHECK_NEAR(poly_smooth(2, &slope), 1, 0, 0);
+    brc_lanes slope;
+    const double u[3] = {0, 0, 0}, rest = 0.2, ell = 0.1;
+    CHECK_NEAR(poly_smooth(brc_lanes_all(-1), &slope)[0], 0, 0, 0);
+    CHECK_NEAR(poly_smooth(brc_lanes_all(0.5), &slope)[0], 0.5, 1e-15, 0);
+    CHECK_NEAR(slope[0], 1.5, 1e-15, 0);
+    CHECK_NEAR(poly_smooth(brc_lanes_all(2), &slope)[0], 1, 0, 0);
     /* half at a vertex in range, one far away, never beyond */
     const double at[3] = {0, 0, rest}, far[3] = {ell, 0, rest},
                  middle[3] = {ell / sqrt(2), 0, rest};
-    CHECK_NEAR(poly_vertex_weight(at, u, 1, rest * rest, ell * ell, grad), 0.5, 0, 0);
-    CHECK_NEAR(poly_vertex_weight(far, u, 1, rest * rest, ell * ell, grad), 1, 1e-12, 0);
-    CHECK_NEAR(poly_vertex_weight(middle, u, 1, rest * rest, ell * ell, grad), 0.75, 1e-12, 0);
-    CHECK_NEAR(poly_foot_weight(0, 1, 0.1, &slope), 0, 0, 0);
-    CHECK_NEAR(poly_foot_weight(0.5, 1, 0.1, &slope), 1, 0, 0);
-    CHECK_NEAR(poly_foot_weight(0.95, 1, 0.1, &slope), 0.5, 1e-14, 0);
-    CHECK_NEAR(slope, -15, 1e-12, 0);
+    CHECK_NEAR(vertex_weight(at, u, rest, ell), 0.5, 0, 0);
+    CHECK_NEAR(vertex_weight(far, u, rest, ell), 1, 1e-12, 0);
+    CHECK_NEAR(vertex_weight(middle, u, rest, ell), 0.75, 1e-12, 0);
+    const brc_lanes one = brc_lanes_all(1);
+    CHECK_NEAR(poly_edge_weight(brc_lanes_all(0), one, 10, &slope)[0], 0, 0, 0);
+    CHECK_NEAR(poly_edge_weight(brc_lanes_all(0.5), one, 10, &slope)[0], 1, 0, 0);
+    CHECK_NEAR(poly_edge_weight(brc_lanes_all(0.95), one, 10, &slope)[0], 0.5, 1e-14, 0);
+    CHECK_NEAR(slope[0], -15, 1e-12, 0);
 }
 
 int main(void)

@@ -1,81 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Energy and linearised springs of the present state. */
-#include "step.h"
+/* The linearised springs that act, or may act within a step, for the time step (stability.h). From
+ * the state alone: the literal evaluation says what touches. */
+#include "polyhedra/platen_geometry.h"
 
 /* Faces that are bonded are this near to each other, in radii R. */
 static const double FACE_SKIN = 1e-3;
-
-static bool bond_of_row(struct poly_bond_result *r, struct poly_bond *bond,
-                        const struct brc_sim *sim, const struct poly_state *st, size_t row)
-{
-    const struct poly_params *params = poly_params_of(sim);
-    struct poly_bond_pose pose;
-    if (sim->pairs.status[row] != BRC_INTACT)
-        return false;
-    *bond = poly_bond_of(params, sim->pairs.model_columns, row);
-    poly_pose_bond(&pose, &sim->pairs, row, st, &sim->bodies, params->torsion);
-    poly_bond_law(r, bond, &pose, params->torsion);
-    return true;
-}
-
-/* Also of what would touch if the radius were larger by `skin`. */
-static bool touch_of_wall(struct poly_touch *t, const struct brc_sim *sim,
-                          const struct poly_state *st, size_t row, size_t p, double skin)
-{
-    const struct brc_contacts *c = &sim->platens;
-    const struct poly_points *points = c->point_columns;
-    size_t v = st->shapes.vertex_first[c->a[row]] + (size_t)points->i[p];
-    return poly_touch_platen(t, st->world[v], brc_sim_platen(sim, c->b[row]),
-                             sim->bodies.x[c->b[row]], poly_params_of(sim)->radius + skin);
-}
-
-/* --- energy ----------------------------------------------------------------------------------- */
-
-struct store {
-    double kn, kt;
-    const struct poly_points *points;
-    double *stored;
-};
-
-static void add_point(const struct store *s, const struct poly_touch *t, size_t p)
-{
-    s->stored[1] += 0.5 * s->kn * t->weight * t->delta * t->delta;
-    s->stored[2] += 0.5 * s->kt * t->weight * brc_norm2(poly_xi(s->points, p));
-}
-
-static void add_active(void *user, const struct poly_active *active)
-{
-    add_point(user, &active->touch, active->point);
-}
-
-void poly_energy(const struct brc_sim *sim, const void *state, double stored[3])
-{
-    const struct poly_state *st = state;
-    const struct poly_params *p = poly_params_of(sim);
-    struct store s = {poly_pair_stiffness(p->kn, p->kn), poly_pair_stiffness(p->kt, p->kt),
-                      sim->pairs.point_columns, stored};
-    struct poly_bond bond;
-    struct poly_bond_result r;
-    brc_set(stored, 0, 0, 0);
-    poly_each_active(sim, st, add_active, &s);
-    for (size_t row = 0; row < sim->pairs.n; row++)
-        if (bond_of_row(&r, &bond, sim, st, row))
-            stored[0] += r.energy;
-    const struct brc_contacts *c = &sim->platens;
-    s.points = c->point_columns;
-    for (size_t row = 0; row < c->n; row++) {
-        struct poly_touch t;
-        for (int32_t k = 0; k < c->np[row]; k++)
-            if (touch_of_wall(&t, sim, st, row, (size_t)c->p0[row] + (size_t)k, 0))
-                add_point(&s, &t, (size_t)c->p0[row] + (size_t)k);
-        if (c->status[row] != BRC_INTACT)
-            continue;
-        poly_hold_law(&r, sim, st, row, &bond);
-        stored[0] += r.energy;
-    }
-}
-
-/* --- springs ---------------------------------------------------------------------------------- */
 
 struct springs {
     const struct brc_sim *sim;
@@ -95,7 +24,7 @@ static void add_spring(struct springs *s, int32_t a, int32_t b, const double x[3
         s->code = brc_springs_add(s->sim->ctx, s->out, spring);
 }
 
-static void add_touch(struct springs *s, int32_t a, int32_t b, const struct poly_touch *t,
+static void add_touch(struct springs *s, int32_t a, int32_t b, const struct poly_geometry *t,
                       double mu, bool is_near)
 {
     struct brc_spring spring = {
@@ -109,7 +38,7 @@ static void add_active_spring(void *user, const struct poly_active *active)
 {
     struct springs *s = user;
     if (s->sim->pairs.status[active->row] != BRC_INTACT)
-        add_touch(s, active->a, active->b, &active->touch, poly_params_of(s->sim)->mu, false);
+        add_touch(s, active->a, active->b, &active->geometry, poly_params_of(s->sim)->mu, false);
 }
 
 /* Features of a row that may close in the same step, as when faces meet. Their springs are those
@@ -122,39 +51,41 @@ static void add_listed(struct springs *s, const struct poly_state *st, size_t ro
     const struct poly_points *points = c->point_columns;
     struct poly_pair pair;
     poly_pair_of(&pair, s->sim, st, c->a[row], c->b[row]);
-    pair.rest += skin;
+    pair.contact_distance += skin;
     for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
         struct poly_feature f = poly_point(points, p);
-        struct poly_touch t;
+        struct poly_geometry t;
         uint8_t active = points->active[p];
-        if (poly_touch(&t, &pair, &f, poly_remembered(&f), &active,
-                       (enum poly_rule)params->features))
+        double margin;
+        if (poly_find_contact(&t, &pair, &f, &active, &margin, (enum poly_rule)params->features))
             add_touch(s, c->a[row], c->b[row], &t, params->mu, is_near);
     }
 }
 
 /* The same of the vertices listed for a platen. */
-static void add_listed_wall(struct springs *s, const struct poly_state *st, size_t row,
-                            bool is_near)
+static void add_listed_platen(struct springs *s, const struct poly_state *st, size_t row,
+                              bool is_near)
 {
     const struct brc_contacts *c = &s->sim->platens;
     double mu = brc_sim_platen(s->sim, c->b[row])->friction;
-    double skin = is_near ? POLY_WALL_SKIN * poly_params_of(s->sim)->radius : 0;
+    double skin = is_near ? POLY_PLATEN_SKIN * poly_params_of(s->sim)->radius : 0;
     for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
-        struct poly_touch t;
-        if (touch_of_wall(&t, s->sim, st, row, p, skin))
+        struct poly_geometry t;
+        if (poly_platen_contact(&t, s->sim, st, row, p, skin))
             add_touch(s, c->a[row], c->b[row], &t, mu, is_near);
     }
 }
 
 /* An intact bond counts with its tension stiffness, even while it is closed: it may open within a
  * step. */
-static void add_bond(struct springs *s, int32_t a, int32_t b, const struct poly_bond *bond,
-                     const struct poly_bond_result *r)
+static void add_bond(struct springs *s, const struct poly_state *st, const struct brc_contacts *c,
+                     size_t row)
 {
-    struct brc_spring spring = {.kn = bond->kn, .ks = bond->kt, .kt = bond->ktheta};
-    brc_copy(spring.n, r->n);
-    add_spring(s, a, b, r->x, &spring);
+    struct poly_bond bond;
+    poly_bond_of_contact(&bond, s->sim, st, c, row);
+    struct brc_spring spring = {.kn = bond.kn, .ks = bond.kt, .kt = bond.ktheta};
+    brc_copy(spring.n, bond.n);
+    add_spring(s, c->a[row], c->b[row], bond.x, &spring);
 }
 
 /* A pair of which nothing is near yet: one contact counts already, at x below the centre of a
@@ -223,29 +154,24 @@ static void add_near_row(struct springs *s, const struct poly_state *st, size_t 
 static void add_row(struct springs *s, const struct poly_state *st, size_t row)
 {
     const struct brc_contacts *c = &s->sim->pairs;
-    struct poly_bond bond;
-    struct poly_bond_result r;
-    if (!bond_of_row(&r, &bond, s->sim, st, row)) {
+    if (c->status[row] != BRC_INTACT) {
         add_near_row(s, st, row);
         return;
     }
-    add_bond(s, c->a[row], c->b[row], &bond, &r);
+    add_bond(s, st, c, row);
     add_listed(s, st, row, FACE_SKIN * poly_params_of(s->sim)->radius, false);
 }
 
-static void add_wall(struct springs *s, const struct poly_state *st, size_t row)
+static void add_platen(struct springs *s, const struct poly_state *st, size_t row)
 {
     const struct brc_contacts *c = &s->sim->platens;
-    struct poly_bond bond;
-    struct poly_bond_result r;
-    add_listed_wall(s, st, row, false);
+    add_listed_platen(s, st, row, false);
     size_t n = s->out->n;
     if (c->status[row] == BRC_INTACT) {
-        poly_hold_law(&r, s->sim, st, row, &bond);
-        add_bond(s, c->a[row], c->b[row], &bond, &r);
+        add_bond(s, st, c, row);
         return;
     }
-    add_listed_wall(s, st, row, true);
+    add_listed_platen(s, st, row, true);
     if (s->out->n == n)
         add_near_platen(s, row);
 }
@@ -258,18 +184,18 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
     for (size_t row = 0; row < sim->pairs.n; row++)
         add_row(&s, st, row);
     for (size_t row = 0; row < sim->platens.n; row++)
-        add_wall(&s, st, row);
+        add_platen(&s, st, row);
     return s.code;
 }
 
-int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_wall)
+int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_platen)
 {
     if (sim->run.regime != BRC_DYNAMIC)
         return 0;
     struct springs s = springs_of(sim, &st->ahead);
     st->ahead.n = 0;
-    if (is_wall)
-        add_listed_wall(&s, st, row, true);
+    if (is_platen)
+        add_listed_platen(&s, st, row, true);
     else if (!touches(&sim->pairs, row))
         add_listed(&s, st, row, POLY_LIST_SKIN * poly_params_of(sim)->radius, true);
     BRC_TRY(s.code);

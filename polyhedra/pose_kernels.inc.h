@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vertices and planes of all cores in space, four at a time. */
-#ifndef POLY_WORLD_H
-#define POLY_WORLD_H
+#ifndef POLY_POSE_KERNELS_H
+#define POLY_POSE_KERNELS_H
 
-#include "polyhedra/touches.h"
+#include "polyhedra/poly.h"
 
 /* Pose of a body, the same in all lanes: rotation matrix and centre. */
 struct pose {
@@ -13,7 +13,7 @@ struct pose {
 /* Four vectors of body frames in space. */
 BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
 {
-    set(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
+    poly_set3(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
 }
 
 /* Where the four of a range that begin at i are: the last ones are the last four once more. A core
@@ -31,8 +31,8 @@ BRC_LANES_INLINE void place_vertices(const struct poly_state *st, const struct p
         brc_lanes v[3];
         brc_lanes_at3(v, st->shapes.vertex + at);
         body_to_space(v, pose->r, v);
-        add(v, pose->x, v);
-        brc_lanes_put3(st->world + at, v);
+        poly_add3(v, pose->x, v);
+        brc_lanes_put3(st->global_vertices + at, v);
     }
 }
 
@@ -50,7 +50,7 @@ BRC_LANES_INLINE void place_planes(const struct poly_state *st, const struct pos
         p[3] = brc_lanes_dot(p, pose->x) + p[3];
         brc_lanes_transpose(p);
         for (size_t k = 0; k < BRC_LANES; k++)
-            brc_lanes_put(st->plane[at + k], p[k]);
+            brc_lanes_put(st->global_planes[at + k], p[k]);
     }
 }
 
@@ -61,7 +61,7 @@ BRC_LANES_INLINE void place_cores(const struct brc_sim *sim, const struct poly_s
     for (size_t i = 0; i < b->n_grains; i++) {
         struct pose pose;
         for (int k = 0; k < 9; k++)
-            pose.r[k] = brc_lanes_all(st->turn[i][k / 3][k % 3]);
+            pose.r[k] = brc_lanes_all(st->rotation[i][k / 3][k % 3]);
         for (int k = 0; k < 3; k++)
             pose.x[k] = brc_lanes_all(b->x[i][k]);
         place_vertices(st, &pose, s->vertex_first[i], s->vertex_first[i + 1]);

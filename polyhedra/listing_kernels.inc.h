@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which feature pairs of two cores can touch within a skin: planes, and pairs of edges, are looked
  * at four at a time. Compiled for each instruction set by the files that include this one. */
-#ifndef POLY_LISTING_H
-#define POLY_LISTING_H
+#ifndef POLY_LISTING_KERNELS_H
+#define POLY_LISTING_KERNELS_H
 
-#include "polyhedra/world.h"
+#include "polyhedra/pose_kernels.inc.h"
 
 #include <string.h>
 
@@ -86,10 +86,10 @@ static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct
                       int32_t v, const struct poly_pair *p, enum poly_rule rule, double skin)
 {
     for (int32_t f = 0; f < s->other->n_faces; f++) {
-        if (fabs(s->height[(size_t)v * s->stride + (size_t)f]) >= p->rest + skin &&
+        if (fabs(s->height[(size_t)v * s->stride + (size_t)f]) >= p->contact_distance + skin &&
             s->highest[v] > 0)
             continue;
-        double path = poly_path_to_face(s->other, f, s->q[v], rule, p->rest);
+        double path = poly_path_to_face(s->other, f, s->q[v], rule, p->contact_distance);
         if (path < skin)
             BRC_TRY(add_vertex(ctx, l, of_b, v, f, none_near, path));
     }
@@ -136,21 +136,22 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
                          const struct poly_pair *p, enum poly_rule rule, double skin)
 {
     bool of_b = s->own == &p->b;
-    double range = sqrt(p->rest * p->rest + p->ell * p->ell) + skin;
+    double range = sqrt(p->contact_distance * p->contact_distance + p->fade * p->fade) + skin;
     for (int32_t v = 0; v < s->own->n_vertices; v++) {
-        if (s->highest[v] >= p->rest + skin)
+        if (s->highest[v] >= p->contact_distance + skin)
             continue;
         if (rule != POLY_MERGED) {
             BRC_TRY(list_faces(ctx, l, s, of_b, v, p, rule, skin));
             continue;
         }
-        struct poly_foot foot;
-        poly_foot_walk(&foot, s->other, s->q[v], poly_place(highest_face(s, v), POLY_ON_FACE));
-        if (foot.s >= p->rest + skin)
+        struct poly_closest at;
+        poly_closest_walk(&at, s->other, s->q[v],
+                          poly_feature_code(highest_face(s, v), POLY_ON_FACE));
+        if (at.s >= p->contact_distance + skin)
             continue;
         int32_t near[POLY_NEAR];
         near_vertices(near, s->other, s->q[v], range);
-        BRC_TRY(add_vertex(ctx, l, of_b, v, foot.place, near, foot.s - p->rest));
+        BRC_TRY(add_vertex(ctx, l, of_b, v, at.feature, near, at.s - p->contact_distance));
     }
     return 0;
 }
@@ -209,21 +210,21 @@ BRC_LANES_INLINE void gather_ends(brc_lanes r[3], const struct poly_core *c, con
 
 /* Relative paths before the edges can touch; right for paths up to skin. While a foot is beyond its
  * edge by a path s out of the end, a relative path of the bodies by less than s cannot bring it
- * inside (path_to_end). */
+ * inside (poly_path_to_end). */
 BRC_LANES_INLINE brc_lanes paths_of_edges(const struct poly_pair *p, const struct edge_pairs *at,
                                           enum poly_rule rule, double skin)
 {
-    struct crossings x;
+    struct poly_crossings x;
     brc_lanes ends[4][3];
     for (int k = 0; k < 2; k++) {
         gather_ends(ends[k], &p->a, p->va, at->i, k);
         gather_ends(ends[2 + k], &p->b, p->vb, at->j, k);
     }
-    cross_lines(&x, ends);
-    brc_lanes path = gap_of_edges(&x) - p->rest;
+    poly_cross_edges(&x, ends);
+    brc_lanes path = poly_edge_gap(&x, p->contact_distance);
     if (rule == POLY_CLOSED)
         return path;
-    return brc_lanes_max(path, path_to_inside(&x, brc_lanes_all(p->reach), skin));
+    return brc_lanes_max(path, poly_path_to_inside(&x, brc_lanes_all(p->reach), skin));
 }
 
 /* Lists those of the pairs that can touch within the skin. */
@@ -253,7 +254,8 @@ BRC_LANES_INLINE int list_edges(struct brc_context *ctx, struct poly_list *l,
     const struct side *a = &sides[0], *b = &sides[1];
     for (int32_t i = 0; i < a->n_near; i++)
         for (int32_t j = 0; j < b->n_near; j += BRC_LANES) {
-            brc_lanes d[3], range = brc_lanes_at(b->half + j) + (a->half[i] + p->rest + skin);
+            brc_lanes d[3],
+                range = brc_lanes_at(b->half + j) + (a->half[i] + p->contact_distance + skin);
             for (int k = 0; k < 3; k++)
                 d[k] = brc_lanes_at(b->middle[k] + j) - a->middle[k][i];
             brc_mask near = brc_lanes_less(brc_lanes_dot(d, d), range * range) &
@@ -314,7 +316,7 @@ BRC_LANES_INLINE int list_features(struct brc_context *ctx, struct poly_list *l,
                                    const struct poly_pair *p, enum poly_rule rule, double skin,
                                    double *allowance)
 {
-    double reach = p->rest + skin;
+    double reach = p->contact_distance + skin;
     l->n = 0;
     BRC_TRY(reserve(ctx, l, p));
     double *next = l->work;
@@ -324,7 +326,7 @@ BRC_LANES_INLINE int list_features(struct brc_context *ctx, struct poly_list *l,
     lay_out(&sides[0], &next, &edge);
     lay_out(&sides[1], &next, &edge);
     double gap = poly_most(measure_heights(&sides[0]), measure_heights(&sides[1]));
-    *allowance = poly_most(skin, gap - p->rest);
+    *allowance = poly_most(skin, gap - p->contact_distance);
     if (gap >= reach)
         return 0;
     for (int k = 0; k < 2; k++) {

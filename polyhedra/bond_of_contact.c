@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The bond of one contact alone, for events, energy and springs: the lanes of the loop with the
+ * same contact in each. */
+#include "polyhedra/motion_kernels.inc.h"
+
+bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
+                          const struct poly_state *st, const struct brc_contacts *c, size_t row)
+{
+    int32_t n = (int32_t)row, a = c->a[row], b = c->b[row];
+    const struct numbers i = {{n, n, n, n}, {a, a, a, a}, {b, b, b, b}};
+    struct poly_bonds4 bonds;
+    struct poly_bond_pose4 pose;
+    struct poly_bond_state4 all;
+    brc_lanes xa[3], x[3];
+    poly_all3(xa, sim->bodies.x[a]);
+    poly_all3(x, sim->bodies.x[b]);
+    poly_sub3(x, x, xa);
+    bool is_platen = c == &sim->platens, torsion = poly_params_of(sim)->torsion && !is_platen;
+    brc_mask intact = bonds_of_group(&bonds, &pose, sim, st, c, &i, x, torsion, is_platen);
+    poly_bond_law(&all, &bonds, &pose);
+    *r = (struct poly_bond){
+        .kn = bonds.kn[0], .kt = bonds.kt[0], .ktheta = bonds.ktheta[0], .energy = all.energy[0]};
+    poly_lane3(r->n, pose.n, 0);
+    poly_lane3(r->x, all.arm, 0);
+    brc_add(r->x, r->x, sim->bodies.x[a]);
+    poly_lane3(r->term, all.term, 0);
+    return intact[0] != 0;
+}
+
+int poly_bond_mode(const struct poly_bond *bond)
+{
+    int mode = bond->term[1] > bond->term[0] ? 1 : 0;
+    return bond->term[2] > bond->term[mode] ? 2 : mode;
+}

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Geometry of four feature contacts side by side: distance, normal, overlap (eqs 1-3, 5) and the
+ * weights of the `merged` rule. The loops have four contacts of whatever pairs; who has one alone
+ * (literal.c, platens) gives it to all lanes and reads one. Knows neither grains nor lists. */
+#ifndef POLY_GEOMETRY_H
+#define POLY_GEOMETRY_H
+
+#include "polyhedra/lanes3.h"
+
+/* Weight of crossing edges: full from this squared sine on (5.7 degrees). */
+#define POLY_SKEW 0.01
+/* Edges count as parallel when the squared sine of their angle is below this. Relative, so that
+ * results scale with the sample. */
+#define POLY_PARALLEL 1e-12
+
+/* Lengths that all contacts of grains share [m]. */
+struct poly_lengths {
+    double contact_distance; /* of the cores, R1 + R2: no overlap */
+    double fade;             /* over which weights of `merged` change */
+    double skin;             /* of the feature lists */
+};
+
+/* Four contacts. Where nothing touches all is zero but for delta, and -delta is a relative path of
+ * the bodies that cannot bring them in touch. Where they fade, they can but touch with a weight
+ * that grows from 0: edges, by their ends. Those that touch do so for a path of valid_path at
+ * least, as long as the closest point of a vertex stays on its feature. */
+struct poly_geometry4 {
+    brc_lanes n[3];   /* unit, from a to b */
+    brc_lanes x[3];   /* middle between the two closest points */
+    brc_lanes delta;  /* m, overlap R1 + R2 - distance, positive in contact */
+    brc_lanes weight; /* of the spring, (0, 1]; 1 except under `merged` */
+    brc_lanes g[3];   /* 1/m, gradient part: force on b is -K delta^2 / 2 times this, at x */
+    brc_lanes c[3];   /* 1, its couple on b in the same measure */
+    brc_lanes valid_path;
+    brc_mask fades;
+};
+
+/* One of them. */
+struct poly_geometry {
+    double n[3], x[3], delta, weight, g[3], c[3];
+};
+
+/* Lane k. */
+BRC_LANES_INLINE void poly_geometry_lane(struct poly_geometry *one, const struct poly_geometry4 *t,
+                                         int k)
+{
+    poly_lane3(one->n, t->n, k);
+    poly_lane3(one->x, t->x, k);
+    poly_lane3(one->g, t->g, k);
+    poly_lane3(one->c, t->c, k);
+    one->delta = t->delta[k];
+    one->weight = t->weight[k];
+}
+
+/* Overlap and normal for the distance s of the closest points, that on b being s out from that on a
+ * with sign 1, the other way round with -1. Returns where they touch. */
+BRC_LANES_INLINE brc_mask poly_overlap(struct poly_geometry4 *t, brc_lanes s,
+                                       const brc_lanes out[3], brc_lanes sign,
+                                       double contact_distance)
+{
+    t->delta = contact_distance - s;                           /* eq:gt12:5 */
+    poly_scale3(t->n, out, sign);                              /* eq:gt12:3 */
+    return brc_lanes_less(s, brc_lanes_all(contact_distance)); /* eq:gt12:2 */
+}
+
+BRC_LANES_INLINE void poly_full_weight(struct poly_geometry4 *t)
+{
+    t->fades = (brc_mask){0};
+    t->weight = brc_lanes_all(1);
+    for (int k = 0; k < 3; k++)
+        t->g[k] = t->c[k] = brc_lanes_all(0);
+}
+
+BRC_LANES_INLINE void poly_hide_apart(struct poly_geometry4 *t, brc_mask touches)
+{
+    t->weight = brc_lanes_where(touches, t->weight);
+    poly_mask3(t->n, touches, t->n);
+    poly_mask3(t->x, touches, t->x);
+    poly_mask3(t->g, touches, t->g);
+    poly_mask3(t->c, touches, t->c);
+}
+
+/* Rises from 0 at x <= 0 to 1 at x >= 1 with continuous slope. */
+BRC_LANES_INLINE brc_lanes poly_smooth(brc_lanes x, brc_lanes *slope)
+{
+    x = brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), brc_lanes_all(1));
+    *slope = 6 * x * (1 - x);
+    return x * x * (3 - 2 * x);
+}
+
+/* --- vertices --------------------------------------------------------------------------------- */
+
+/* Four vertices v at distance s from the other core, whose outward normal there is out; sign: 1
+ * where the vertex belongs to b, else -1. Returns where they touch; the weight is full. */
+BRC_LANES_INLINE brc_mask poly_vertex_geometry(struct poly_geometry4 *t, const brc_lanes v[3],
+                                               brc_lanes s, const brc_lanes out[3], brc_lanes sign,
+                                               double contact_distance)
+{
+    brc_mask touches = poly_overlap(t, s, out, sign, contact_distance);
+    t->valid_path = t->delta;
+    for (int k = 0; k < 3; k++)
+        t->x[k] = v[k] - 0.5 * s * out[k];
+    poly_full_weight(t);
+    return touches;
+}
+
+/* How far vertices of the other core lower the weight of a vertex: the product of their factors,
+ * and its gradient. */
+struct poly_fading {
+    brc_lanes product, gradient[3];
+};
+
+BRC_LANES_INLINE void poly_fading_begin(struct poly_fading *f)
+{
+    f->product = brc_lanes_all(1);
+    poly_clear(f->gradient, sizeof f->gradient);
+}
+
+/* One more vertex of the other core, from which v is at r; nothing where it is not near. Its factor
+ * is 0 where the two overlap by themselves, 1 from sqrt(5) R on. */
+BRC_LANES_INLINE void poly_fading_add(struct poly_fading *f, const brc_lanes r[3], brc_mask is_near,
+                                      const struct poly_lengths *len)
+{
+    const double range2 = len->contact_distance * len->contact_distance;
+    const double per2 = 1 / (len->fade * len->fade);
+    brc_lanes slope, far = (brc_lanes_dot(r, r) - range2) * per2;
+    brc_lanes s = poly_smooth(brc_lanes_pick(is_near, far, brc_lanes_all(1)), &slope);
+    for (int k = 0; k < 3; k++)
+        f->gradient[k] = f->gradient[k] * s + f->product * (r[k] * (2 * per2 * slope));
+    f->product *= s;
+}
+
+/* Weight of the springs of vertices v, from 1/2 where a vertex of the other core overlaps it (and
+ * has the other half) to 1. */
+BRC_LANES_INLINE void poly_weigh_vertex(struct poly_geometry4 *t, const brc_lanes v[3],
+                                        brc_lanes sign, const struct poly_fading *f)
+{
+    brc_lanes arm[3];
+    t->weight = 0.5 + 0.5 * f->product;
+    poly_scale3(t->g, f->gradient, 0.5 * sign);
+    poly_sub3(arm, v, t->x);
+    brc_lanes_cross(t->c, arm, t->g);
+}
+
+/* --- edges ------------------------------------------------------------------------------------ */
+
+/* Four pairs of edges, p0 + s a and q0 + t b, with what their common perpendicular has to say. */
+struct poly_crossings {
+    brc_lanes m[3], per_m, rm;   /* a x b of edges as they are, 1 / m . m, r . m */
+    brc_lanes r[3], r2;          /* from p0 to q0, r . r */
+    brc_lanes a[3], b[3];        /* unit directions */
+    brc_lanes c, sin2, per_sin2; /* cosine, squared sine of the angle */
+    brc_lanes ta, tb, la, lb;    /* m, closest points of the lines along the edges; lengths */
+    brc_lanes ra, rb;            /* r . a, r . b */
+    brc_mask skew;               /* not parallel */
+};
+
+/* Returns where both closest points of the lines are strictly inside edges that are not parallel.
+ */
+BRC_LANES_INLINE brc_mask poly_cross_edges(struct poly_crossings *x, brc_lanes p[4][3])
+{
+    poly_sub3(x->a, p[1], p[0]);
+    poly_sub3(x->b, p[3], p[2]);
+    poly_sub3(x->r, p[2], p[0]);
+    brc_lanes_cross(x->m, x->a, x->b);
+    brc_lanes la2 = brc_lanes_dot(x->a, x->a), lb2 = brc_lanes_dot(x->b, x->b),
+              m2 = brc_lanes_dot(x->m, x->m);
+    brc_lanes c = brc_lanes_dot(x->a, x->b), ra = brc_lanes_dot(x->r, x->a),
+              rb = brc_lanes_dot(x->r, x->b);
+    brc_lanes ta = ra * lb2 - c * rb, tb = c * ra - rb * la2;
+    x->skew = brc_lanes_less(POLY_PARALLEL * la2 * lb2, m2);
+    brc_mask inside = x->skew & poly_positive(ta) & brc_lanes_less(ta, m2) & poly_positive(tb) &
+                      brc_lanes_less(tb, m2);
+    x->rm = brc_lanes_dot(x->r, x->m);
+    x->r2 = brc_lanes_dot(x->r, x->r);
+    x->la = brc_lanes_sqrt(la2);
+    x->lb = brc_lanes_sqrt(lb2);
+    brc_lanes per = 1 / (x->la * x->lb), per_a = per * x->lb, per_b = per * x->la, per_m = 1 / m2;
+    x->per_m = per_m;
+    poly_scale3(x->a, x->a, per_a);
+    poly_scale3(x->b, x->b, per_b);
+    x->c = c * per;
+    x->sin2 = m2 * (per * per);
+    x->per_sin2 = la2 * lb2 * per_m;
+    x->ta = ta * per_m * x->la;
+    x->tb = tb * per_m * x->lb;
+    x->ra = ra * per_a;
+    x->rb = rb * per_b;
+    return inside;
+}
+
+BRC_LANES_INLINE brc_lanes poly_clamp(brc_lanes x, brc_lanes high)
+{
+    return brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), high);
+}
+
+/* Closest points of the closed edges, s and t along them. */
+BRC_LANES_INLINE void poly_closest_on_edges(brc_lanes *s, brc_lanes *t,
+                                            const struct poly_crossings *x)
+{
+    *s = poly_clamp(x->ta, x->la);
+    *t = poly_clamp(*s * x->c - x->rb, x->lb);
+    *s = poly_clamp(*t * x->c + x->ra, x->la);
+}
+
+/* From the point at s of the edges a to that at t of the edges b; returns their distance. */
+BRC_LANES_INLINE brc_lanes poly_edge_distance(brc_lanes r[3], const struct poly_crossings *x,
+                                              brc_lanes s, brc_lanes t)
+{
+    for (int k = 0; k < 3; k++)
+        r[k] = x->r[k] + t * x->b[k] - s * x->a[k];
+    return brc_lanes_sqrt(brc_lanes_dot(r, r)); /* eq:gt12:1 */
+}
+
+BRC_LANES_INLINE brc_lanes poly_edge_gap(const struct poly_crossings *x, double contact_distance)
+{
+    brc_lanes s, t, r[3];
+    poly_closest_on_edges(&s, &t, x);
+    return poly_edge_distance(r, x, s, t) - contact_distance;
+}
+
+/* The path that may bring the closest point of the common perpendicular on an edge to its end, at u
+ * along it with sign pointing out, which it is beyond. With unit directions a (out of this end) and
+ * b (of the other edge), and r from the end to a point of the other edge, it is beyond the end
+ * while r . out > 0, where out = a - (a . b) b. A relative path of the bodies by s, which turns
+ * them by at most s / reach, changes r by at most s and out by at most s / reach. ru and rt are
+ * products of both directions with the vector from the edge's start to that of the other one. */
+BRC_LANES_INLINE brc_lanes poly_path_to_end(const struct poly_crossings *x, brc_lanes u,
+                                            double sign, brc_lanes ru, brc_lanes rt,
+                                            brc_lanes length, brc_lanes reach, double skin)
+{
+    brc_lanes t = poly_clamp(u * x->c - rt, length), along = ru + t * x->c - u;
+    brc_lanes out = sign * (along - x->c * (rt + t - u * x->c));
+    brc_lanes far2 = x->r2 + t * t + u * u + 2 * (t * rt - u * ru - t * u * x->c);
+    brc_lanes far = brc_lanes_sqrt(brc_lanes_max(far2, brc_lanes_all(0)));
+    return out / (brc_lanes_sqrt(x->sin2) + (far + skin) / reach);
+}
+
+/* Relative path that may bring both closest points inside their edges. */
+BRC_LANES_INLINE brc_lanes poly_path_to_inside(const struct poly_crossings *x, brc_lanes reach,
+                                               double skin)
+{
+    const brc_lanes none = brc_lanes_all(0);
+    brc_lanes path = poly_path_to_end(x, none, -1, x->ra, x->rb, x->lb, reach, skin);
+    path = brc_lanes_max(path, poly_path_to_end(x, x->la, 1, x->ra, x->rb, x->lb, reach, skin));
+    path = brc_lanes_max(path, poly_path_to_end(x, none, -1, -x->rb, -x->ra, x->la, reach, skin));
+    return brc_lanes_max(path, poly_path_to_end(x, x->lb, 1, -x->rb, -x->ra, x->la, reach, skin));
+}
+
+/* Relative path for which both closest points surely stay inside their edges. By a shift of s one
+ * moves by s / sin, by a turn of s / reach by the distance over sin^2 times that; twice as much
+ * while the sine changes by a quarter at most. */
+BRC_LANES_INLINE brc_lanes poly_path_inside(const struct poly_crossings *x, brc_lanes reach,
+                                            brc_lanes d)
+{
+    brc_lanes sine = brc_lanes_sqrt(x->sin2);
+    brc_lanes far =
+        brc_lanes_min(brc_lanes_min(x->ta, x->la - x->ta), brc_lanes_min(x->tb, x->lb - x->tb));
+    brc_lanes path = 0.5 * far * reach * x->sin2 / (sine * reach + brc_lanes_abs(d));
+    return brc_lanes_min(path, 0.25 * sine * reach);
+}
+
+/* Weight of a point at t on an edge: 0 at its ends, full from the fade length inside. */
+BRC_LANES_INLINE brc_lanes poly_edge_weight(brc_lanes t, brc_lanes length, double per_fade,
+                                            brc_lanes *slope)
+{
+    brc_lanes s0, s1, w0 = poly_smooth(t * per_fade, &s0),
+                      w1 = poly_smooth((length - t) * per_fade, &s1);
+    *slope = (s0 * w1 - w0 * s1) * per_fade;
+    return w0 * w1;
+}
+
+/* Weight of crossing edges with distance d along n, and the gradient parts g and c; see README.md
+ * for the derivation. */
+BRC_LANES_INLINE void poly_weigh_crossing(struct poly_geometry4 *t, const struct poly_crossings *x,
+                                          double fade, brc_lanes d)
+{
+    const double per_fade = 1 / fade, per_skew = 1 / POLY_SKEW;
+    brc_lanes da, db, dp, bn[3], ba[3], gn[3], per = x->per_sin2;
+    brc_lanes wa = poly_edge_weight(x->ta, x->la, per_fade, &da);
+    brc_lanes wb = poly_edge_weight(x->tb, x->lb, per_fade, &db);
+    brc_lanes wp = poly_smooth(x->sin2 * per_skew, &dp);
+    brc_lanes by_a = da * wb * wp, by_b = wa * db * wp, by_angle = wa * wb * dp * per_skew;
+    t->weight = wa * wb * wp;
+    brc_lanes_cross(bn, x->b, t->n);
+    brc_lanes_cross(ba, x->b, x->a);
+    for (int i = 0; i < 3; i++) {
+        t->g[i] = (by_a * (x->a[i] - x->c * x->b[i]) + by_b * (x->c * x->a[i] - x->b[i])) * per;
+        t->c[i] = -(d * per * (x->c * by_a + by_b) * bn[i] + 2 * x->c * by_angle * ba[i]);
+    }
+    /* from the closest point on b to the middle */
+    brc_lanes_cross(gn, t->n, t->g);
+    poly_axpy3(t->c, 0.5 * d, gn);
+}
+
+/* Edges p[0] p[1] of a and p[2] p[3] of b that cross with both closest points inside. The side on
+ * which they met, +1 or -1, keeps edges that have passed through each other pushed back; 0: not
+ * known, and known afterwards. Returns where they touch; elsewhere -delta is the path that they are
+ * free for. */
+BRC_LANES_INLINE brc_mask poly_edge_geometry(struct poly_geometry4 *t,
+                                             const struct poly_lengths *len, brc_lanes p[4][3],
+                                             brc_lanes *side, brc_lanes reach, const bool merged)
+{
+    struct poly_crossings x;
+    brc_mask inside = poly_cross_edges(&x, p);
+    brc_lanes root_m = brc_lanes_sqrt(x.per_m), d = x.rm * root_m;
+    brc_lanes met = brc_lanes_pick(poly_positive(-d), brc_lanes_all(-1), brc_lanes_all(1));
+    *side = brc_lanes_pick(poly_positive(brc_lanes_abs(*side)), *side, met);
+    d *= *side;
+    brc_mask touches = inside & poly_overlap(t, d, x.m, root_m * *side, len->contact_distance) &
+                       brc_lanes_less(brc_lanes_all(-len->contact_distance), d);
+    t->valid_path = merged ? t->delta : brc_lanes_min(t->delta, poly_path_inside(&x, reach, d));
+    for (int k = 0; k < 3; k++)
+        t->x[k] = p[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
+    poly_full_weight(t);
+    if (merged)
+        poly_weigh_crossing(t, &x, len->fade, d);
+    touches &= poly_positive(t->weight);
+    if (brc_lanes_any(~touches)) {
+        brc_lanes free = poly_path_to_inside(&x, reach, len->skin);
+        brc_lanes path = brc_lanes_max(poly_edge_gap(&x, len->contact_distance), free);
+        t->delta = brc_lanes_pick(touches, t->delta, -path);
+        if (merged)
+            t->fades = poly_positive(free);
+    }
+    poly_hide_apart(t, touches);
+    return touches;
+}
+
+#endif

@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The points of a batch's lists, four at a time: their geometry from items, then forces and springs
+ * into the sums of their contacts. */
+#ifndef POLY_POINT_KERNELS_H
+#define POLY_POINT_KERNELS_H
+
+#include "polyhedra/motion_kernels.inc.h"
+#include "polyhedra/platen_geometry.h"
+
+/* --- geometry --------------------------------------------------------------------------------- */
+
+/* Distance s and outward normal n of v from planes. */
+BRC_LANES_INLINE void distance_to_planes(brc_lanes *s, brc_lanes n[3],
+                                         const struct poly_batch *batch, const brc_lanes v[3],
+                                         const int32_t *const item[])
+{
+    const double *plane[BRC_LANES];
+    brc_lanes p[BRC_LANES];
+    for (int k = 0; k < BRC_LANES; k++)
+        plane[k] = batch->st->global_planes[item[k][POLY_ITEM_FEATURE]];
+    brc_lanes_gather4(p, plane);
+    poly_set3(n, p[0], p[1], p[2]);
+    *s = brc_lanes_dot(n, v) - p[3];
+}
+
+/* Distance s and outward normal n of v from edges or vertices. */
+BRC_LANES_INLINE void distance_to_edges(brc_lanes *s, brc_lanes n[3],
+                                        const struct poly_batch *batch, const brc_lanes v[3],
+                                        const int32_t *const item[])
+{
+    double(*vertices)[3] = batch->st->global_vertices;
+    int32_t i[2][BRC_LANES];
+    for (int k = 0; k < BRC_LANES; k++) {
+        i[0][k] = item[k][POLY_ITEM_FEATURE];
+        i[1][k] = item[k][POLY_ITEM_FEATURE + 1];
+    }
+    brc_lanes p[3], along[3];
+    brc_lanes_gather3(p, vertices, i[0]);
+    brc_lanes_gather3(along, vertices, i[1]);
+    poly_sub3(along, along, p);
+    poly_sub3(n, v, p);
+    brc_lanes length2 = brc_lanes_dot(along, along);
+    brc_lanes part = brc_lanes_where(poly_positive(length2), brc_lanes_dot(n, along) / length2);
+    poly_axpy3(n, -part, along);
+    *s = brc_lanes_sqrt(brc_lanes_dot(n, n));
+    poly_scale3(n, n, 1 / *s);
+}
+
+/* Number of vertex i of the other core that may lower the weight, or -1. */
+BRC_LANES_INLINE int32_t near_vertex(const int32_t *item, int32_t i)
+{
+    const int32_t *near = item + POLY_ITEM_NEAR;
+    if (i >= item[POLY_ITEM_LIST] >> POLY_NEAR_SHIFT)
+        return -1;
+    return item[POLY_ITEM_LIST] & POLY_IN_TURN ? near[0] + i : near[i];
+}
+
+/* Near vertices of the other core lower the weights of vertices v. */
+BRC_LANES_INLINE void fade_vertices(struct poly_geometry4 *t, const struct poly_batch *batch,
+                                    const brc_lanes v[3], brc_lanes sign,
+                                    const int32_t *const item[], int32_t n_near)
+{
+    struct poly_fading f;
+    poly_fading_begin(&f);
+    for (int32_t i = 0; i < n_near; i++) {
+        int32_t u[BRC_LANES];
+        brc_mask is_near;
+        brc_lanes r[3];
+        for (int k = 0; k < BRC_LANES; k++) {
+            u[k] = near_vertex(item[k], i);
+            is_near[k] = u[k] < 0 ? 0 : -1;
+            u[k] = u[k] < 0 ? item[k][POLY_ITEM_VERTEX] : u[k];
+        }
+        brc_lanes_gather3(r, batch->st->global_vertices, u);
+        poly_sub3(r, v, r);
+        poly_fading_add(&f, r, is_near, &batch->len);
+    }
+    poly_weigh_vertex(t, v, sign, &f);
+}
+
+BRC_LANES_INLINE void vertices_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
+                                        const struct poly_task *task, const bool flat)
+{
+    const struct poly_points *points = batch->contacts->point_columns;
+    const int32_t *item[BRC_LANES];
+    int32_t vertex[BRC_LANES], n_near = 0;
+    brc_lanes v[3], s, out[3], sign;
+    for (int k = 0; k < BRC_LANES; k++) {
+        item[k] = points->item[task[k].point];
+        vertex[k] = item[k][POLY_ITEM_VERTEX];
+        sign[k] = item[k][POLY_ITEM_LIST] & POLY_OF_A ? -1 : 1;
+        n_near = item[k][POLY_ITEM_LIST] >> POLY_NEAR_SHIFT > n_near
+                     ? item[k][POLY_ITEM_LIST] >> POLY_NEAR_SHIFT
+                     : n_near;
+    }
+    brc_lanes_gather3(v, batch->st->global_vertices, vertex);
+    if (flat)
+        distance_to_planes(&s, out, batch, v, item);
+    else
+        distance_to_edges(&s, out, batch, v, item);
+    brc_mask touches = poly_vertex_geometry(t, v, s, out, sign, batch->len.contact_distance);
+    if (n_near > 0)
+        fade_vertices(t, batch, v, sign, item, n_near);
+    poly_hide_apart(t, touches);
+}
+
+BRC_LANES_INLINE void edges_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
+                                     const struct poly_task *task, const bool merged)
+{
+    struct poly_points *points = batch->contacts->point_columns;
+    int32_t end[4][BRC_LANES], *item[BRC_LANES];
+    brc_lanes p[4][3], side, reach;
+    for (int k = 0; k < BRC_LANES; k++) {
+        item[k] = points->item[task[k].point];
+        side[k] = item[k][POLY_ITEM_SIDE];
+        reach[k] = poly_item_reach(item[k]);
+        for (int j = 0; j < 4; j++)
+            end[j][k] = item[k][POLY_ITEM_END + j];
+    }
+    for (int j = 0; j < 4; j++)
+        brc_lanes_gather3(p[j], batch->st->global_vertices, end[j]);
+    poly_edge_geometry(t, &batch->len, p, &side, reach, merged);
+    for (int32_t k = 0; k < BRC_LANES; k++) {
+        if (item[k][POLY_ITEM_SIDE] != 0)
+            continue;
+        item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : 1;
+        points->active[task[k].point] = side[k] < 0 ? 2 : 1;
+    }
+}
+
+/* Vertices at platens; those of the row that nobody reads are taken along with the batch's first.
+ */
+BRC_LANES_INLINE void platens_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
+                                       const struct poly_task *task)
+{
+    size_t vertex[BRC_LANES];
+    int32_t platen[BRC_LANES];
+    for (int k = 0; k < BRC_LANES; k++) {
+        int32_t row = task[k].row < batch->n_rows ? task[k].row : 0;
+        vertex[k] = poly_platen_vertex(batch->sim, batch->st, (size_t)batch->row[row],
+                                       (size_t)task[k].point);
+        platen[k] = batch->b[row];
+    }
+    poly_platen_geometry(t, batch->sim, batch->st, vertex, platen, 0);
+}
+
+/* --- forces ----------------------------------------------------------------------------------- */
+
+/* Adds the stiffness of four points to the tangents of their rows. */
+BRC_LANES_INLINE void add_tangents(struct poly_batch *batch, const int32_t row[BRC_LANES],
+                                   const struct poly_geometry4 *t, const brc_lanes xi[3],
+                                   brc_mask slips, const brc_lanes arm[3], const bool friction)
+{
+    brc_lanes a[3][3], q[3], k[36], force[3], moment[3];
+    poly_spring_stiffness(a, q, &batch->law, t, xi, slips, friction);
+    for (int j = 0; j < 6; j++) {
+        const int l = (j + 1) % 3, m = (j + 2) % 3;
+        for (int i = 0; i < 3; i++)
+            force[i] = j < 3 ? a[j][i] : arm[l] * a[m][i] - arm[m] * a[l][i] + q[i] * t->c[j % 3];
+        brc_lanes_cross(moment, arm, force);
+        for (int i = 0; i < 3; i++) {
+            k[6 * j + i] = force[i];
+            k[6 * j + i + 3] = moment[i];
+        }
+    }
+    for (int n = 0; n < 36; n += BRC_LANES) {
+        brc_lanes_transpose(k + n);
+        for (int i = 0; i < BRC_LANES; i++) {
+            double *to = batch->tangent[row[i]] + n;
+            brc_lanes_put(to, brc_lanes_at(to) + k[n + i]);
+        }
+    }
+    for (int i = 0; i < BRC_LANES; i++)
+        if (t->weight[i] > 0)
+            batch->valid_path[row[i]] = poly_least(batch->valid_path[row[i]], t->valid_path[i]);
+}
+
+/* Adds the lanes to the sums of their rows, one after the other: the points of a row are summed in
+ * the order of the lists. */
+BRC_LANES_INLINE void add_sums(struct poly_batch *batch, const int32_t row[BRC_LANES],
+                               brc_lanes *sums, int end)
+{
+    for (int k = 0; k < end; k += BRC_LANES) {
+        brc_lanes_transpose(sums + k);
+        for (int i = 0; i < BRC_LANES; i++) {
+            double *to = batch->sum[row[i]] + k;
+            brc_lanes_put(to, brc_lanes_at(to) + sums[k + i]); /* eq:gt12:6, eq:gt12:7 */
+        }
+    }
+}
+
+/* Forces of four points, which touch or are apart. Returns where they slip. */
+BRC_LANES_INLINE brc_mask forces_of_points(const struct poly_batch *batch, struct poly_sums4 *s,
+                                           const struct poly_geometry4 *t, const struct frames *row,
+                                           struct poly_springs4 *springs, const brc_lanes arm[3],
+                                           const bool linearised, const bool friction,
+                                           const bool viscous, const bool ledger)
+{
+    const struct poly_spring_law *law = &batch->law;
+    brc_lanes back[3], u[3], old = springs->weight, stiff = brc_lanes_all(law->kn);
+    brc_mask touches = poly_positive(t->weight), slips = {0};
+    springs->weight = brc_lanes_pick(touches, t->weight, old);
+    poly_sub3(back, arm, row->x);
+    poly_normal_force(&s->normal, t, law->kn, arm);
+    if (friction) /* but for platens that have none */
+        stiff = brc_lanes_pick(poly_positive(row->limit), brc_lanes_all(law->stiff), stiff);
+    stiff = brc_lanes_where(touches, stiff);
+    s->k[0] = stiff;
+    s->k[1] = stiff * brc_lanes_dot(arm, arm);
+    s->k[2] = stiff * brc_lanes_dot(back, back);
+    s->stored = s->slid = brc_lanes_all(0);
+    if (friction || viscous)
+        slip_at(u, row, arm);
+    if (friction) {
+        const brc_lanes turn[3] = {row->along[0].turn, row->along[1].turn, row->along[2].turn};
+        struct poly_slip4 slip = {.twirl = brc_lanes_dot(turn, t->n), .limit = row->limit};
+        poly_scale3(slip.du, u, brc_lanes_all(linearised ? 1 : batch->sim->dt));
+        slips = poly_shear_force(springs, s, t, &slip, law->kt, arm, brc_lanes_where(touches, old),
+                                 ledger);
+    } else {
+        poly_clear((brc_lanes *)&s->shear, sizeof s->shear);
+    }
+    if (viscous) {
+        brc_lanes f[3];
+        poly_viscous_force(f, t, law->kn, row->gn, row->gt, u);
+        poly_force_at(&s->viscous, f, arm);
+    } else {
+        poly_clear((brc_lanes *)&s->viscous, sizeof s->viscous);
+    }
+    return slips & touches;
+}
+
+/* Points that begin to touch, and those that are apart. */
+BRC_LANES_INLINE void note_changes(struct poly_batch *batch, const struct poly_task *task,
+                                   int32_t n, const struct poly_geometry4 *t, brc_lanes old)
+{
+    struct poly_points *points = batch->contacts->point_columns;
+    brc_mask touches = poly_positive(t->weight), taken = brc_lanes_first(n);
+    if (!brc_lanes_any(taken & (~touches | ~poly_positive(old))))
+        return;
+    for (int32_t k = 0; k < BRC_LANES && k < n; k++) {
+        if (!touches[k]) {
+            bool fades = t->fades[k] != 0;
+            batch->has_apart[task[k].row] |= !fades;
+            batch->apart[batch->n_apart++] =
+                (struct poly_apart){task[k].row, task[k].point, poly_most(-t->delta[k], 0), fades};
+        } else if (points->active[task[k].point] == 0)
+            points->active[task[k].point] = 1;
+    }
+}
+
+/* Forces of the four points from task on, of which the first n count. */
+BRC_LANES_INLINE void act_of_points(struct poly_batch *batch, const struct poly_task *task,
+                                    int32_t n, const struct poly_geometry4 *t,
+                                    const bool linearised, const bool friction, const bool viscous,
+                                    const bool ledger)
+{
+    const struct poly_points *points = batch->contacts->point_columns;
+    const double *frame[BRC_LANES], *from[BRC_LANES];
+    int32_t row[BRC_LANES];
+    struct frames f;
+    struct poly_springs4 springs;
+    struct poly_sums4 s;
+    for (int k = 0; k < BRC_LANES; k++) {
+        row[k] = task[k].row;
+        frame[k] = batch->frame[row[k]];
+        from[k] = points->spring[task[k].point];
+    }
+    gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
+    gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
+    brc_lanes arm[3], old = springs.weight;
+    poly_sub3(arm, t->x, f.xa);
+    brc_mask slips =
+        forces_of_points(batch, &s, t, &f, &springs, arm, linearised, friction, viscous, ledger);
+    note_changes(batch, task, n, t, old);
+    const bool *wanted = batch->will_linearise;
+    if (linearised && (wanted[row[0]] | wanted[row[1]] | wanted[row[2]] | wanted[row[3]]))
+        add_tangents(batch, row, t, springs.xi, slips, arm, friction);
+    brc_lanes *part = (brc_lanes *)&springs;
+    brc_lanes_transpose(part);
+    brc_lanes_transpose(part + BRC_LANES);
+    for (int k = 0; k < BRC_LANES && k < n; k++) {
+        brc_lanes_put(points->spring[task[k].point], part[k]);
+        brc_lanes_put(points->spring[task[k].point] + BRC_LANES, part[BRC_LANES + k]);
+        batch->nearest[row[k]] =
+            poly_least(batch->nearest[row[k]], t->weight[k] > 0 ? -t->delta[k] : HUGE_VAL);
+    }
+    s.none = brc_lanes_all(0);
+    add_sums(batch, row, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
+}
+
+/* Ends a list at a whole group: what is left over goes to a row that nobody reads. Returns its
+ * number of tasks; the list is empty then. */
+BRC_LANES_INLINE int32_t end_list(struct poly_batch *batch, int list)
+{
+    struct poly_task *task = batch->task[list];
+    int32_t n = batch->n_tasks[list];
+    for (int32_t k = n; k % BRC_LANES != 0; k++)
+        task[k] = (struct poly_task){POLY_ROWS, task[n - 1].point};
+    batch->n_tasks[list] = 0;
+    return n;
+}
+
+BRC_LANES_INLINE void points_of_list(struct poly_batch *batch, const int list, const bool merged,
+                                     const bool linearised, const bool friction, const bool viscous,
+                                     const bool ledger)
+{
+    const struct poly_task *task = batch->task[list];
+    int32_t n = end_list(batch, list);
+    for (int32_t k = 0; k < n; k += BRC_LANES) {
+        struct poly_geometry4 t;
+        if (list == POLY_KNOWN)
+            t = batch->known[k / BRC_LANES];
+        else if (list == POLY_CROSSING)
+            edges_of_tasks(&t, batch, task + k, merged);
+        else
+            vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT);
+        act_of_points(batch, task + k, n - k, &t, linearised, friction, viscous, ledger);
+    }
+}
+
+BRC_LANES_INLINE void points_kernel(struct poly_batch *batch, const bool merged,
+                                    const bool linearised, const bool friction, const bool viscous,
+                                    const bool ledger)
+{
+    points_of_list(batch, POLY_FLAT, merged, linearised, friction, viscous, ledger);
+    if (merged)
+        points_of_list(batch, POLY_SHARP, merged, linearised, friction, viscous, ledger);
+    points_of_list(batch, POLY_CROSSING, merged, linearised, friction, viscous, ledger);
+    points_of_list(batch, POLY_KNOWN, merged, linearised, friction, viscous, ledger);
+}
+
+/* Points of platens, whose friction is that of each contact. */
+BRC_LANES_INLINE void platens_kernel(struct poly_batch *batch, const bool viscous,
+                                     const bool ledger)
+{
+    const struct poly_task *task = batch->task[POLY_FLAT];
+    int32_t n = end_list(batch, POLY_FLAT);
+    for (int32_t k = 0; k < n; k += BRC_LANES) {
+        struct poly_geometry4 t;
+        platens_of_tasks(&t, batch, task + k);
+        act_of_points(batch, task + k, n - k, &t, false, true, viscous, ledger);
+    }
+}
+
+#endif
