@@ -65,12 +65,12 @@ static void add_platen(const struct brc_sim *sim, const struct vgcm_law *law, si
 {
     const struct brc_contacts *c = &sim->platens;
     const struct vgcm_points *p = vgcm_point_columns(c);
-    bool is_grip = brc_sim_platen(sim, c->b[i])->bonding != BRC_BONDING_NONE;
+    bool is_held = vgcm_platen_bonding(c, i, brc_sim_platen(sim, c->b[i])) != BRC_BONDING_NONE;
     double kn = vgcm_columns(c)->kn[i];
     struct vgcm_bond bond = vgcm_springs_of(law, kn);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         struct vgcm_point q = vgcm_point_at(p, j, p->un[j], bond.ks * p->law[j][VGCM_AREA]);
-        if (is_grip || q.un < 0)
+        if (is_held || q.un < 0)
             stored[1] += 0.5 * kn * p->law[j][VGCM_AREA] * q.un * q.un;
         stored[2] += shear_energy(&bond, p->law[j][VGCM_AREA], &q);
     }
@@ -139,17 +139,20 @@ static int list_platen(const struct brc_sim *sim, const struct vgcm_law *law, si
     const struct vgcm_points *p = vgcm_point_columns(c);
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[i]);
     struct brc_spring spring = {.a = c->a[i], .b = c->b[i]};
-    double t[3];
+    double t[3], x[3], height, normal[3];
     brc_cross(t, f->n[i], f->s[i]);
-    brc_scale(spring.n, platen->n, -1);
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         brc_scale(spring.ra, f->n[i], p->h[j]);
         if (f->phase[i] == VGCM_SPHERE)
             brc_scale(spring.ra, f->n[i], p->un[j] + f->contact_distance[i]);
         brc_axpy(spring.ra, p->law[j][VGCM_AT_S], f->s[i]);
         brc_axpy(spring.ra, p->law[j][VGCM_AT_T], t);
+        brc_add(x, sim->bodies.x[c->a[i]], spring.ra);
+        brc_platen_height(platen, sim->bodies.x[c->b[i]], x, &height, normal);
+        brc_scale(spring.n, normal, -1);
         spring.kn = f->kn[i] * p->law[j][VGCM_AREA];
-        spring.ks = platen->bonding == BRC_BONDING_GRIP ? 0 : law->eta * spring.kn;
+        spring.ks =
+            vgcm_platen_bonding(c, i, platen) == BRC_BONDING_GRIP ? 0 : law->eta * spring.kn;
         BRC_TRY(brc_springs_add(sim->ctx, out, &spring));
     }
     return 0;

@@ -382,22 +382,24 @@ static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double
     e->friction += sum.friction[0];
 }
 
-/* Points that are broken from the start: they push and slide with friction. un: after the step. */
-VGCM_INLINE void vgcm_lanes_friction(const struct vgcm_bond *bond, brc_lanes area,
+/* Points that are broken from the start: they push and slide with friction, and a platen may hold
+ * them against opening (pulls), where no friction is left. un: after the step. */
+VGCM_INLINE void vgcm_lanes_friction(const struct vgcm_bond *bond, bool pulls, brc_lanes area,
                                      const brc_lanes du[3], struct vgcm_friction_lanes *q,
                                      struct vgcm_energy_lanes *e)
 {
     brc_lanes none = brc_lanes_all(0), un_old = q->un - du[0], s_old = q->s, t_old = q->t;
     brc_lanes s = s_old - du[1], t = t_old - du[2]; /* eq:vgcm:16, eq:vgcm:18 */
     brc_lanes force2 = s * s + t * t;
-    q->normal_force = brc_lanes_min(q->un, none); /* eq:vgcm:17 */
+    brc_lanes normal_force_old = pulls ? un_old : brc_lanes_min(un_old, none);
+    q->normal_force = pulls ? q->un : brc_lanes_min(q->un, none); /* eq:vgcm:17 */
     brc_lanes limit = vgcm_lanes_limit(bond->law, none, q->normal_force, none);
     brc_mask cut = brc_lanes_less(limit * limit, force2);
     brc_lanes ratio = brc_lanes_pick(cut, limit / brc_lanes_sqrt(force2), brc_lanes_all(1));
     q->s = ratio * s;
     q->t = ratio * t;
     brc_lanes half_kn = 0.5 * bond->kn * area, half_ks = 0.5 * bond->ks * area;
-    e->normal += half_kn * ((brc_lanes_min(un_old, none) + q->normal_force) * du[0]);
+    e->normal += half_kn * ((normal_force_old + q->normal_force) * du[0]);
     e->shear += half_ks * (ratio * ratio * force2 - (s_old * s_old + t_old * t_old));
     e->friction += half_ks * ((1 - ratio) * (s_old * s + t_old * t + ratio * force2));
 }
@@ -412,7 +414,7 @@ static inline void vgcm_law_friction(const struct vgcm_bond *bond, double area, 
                                     .s = brc_lanes_all(inv * p->fs),
                                     .t = brc_lanes_all(inv * p->ft)};
     struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
-    vgcm_lanes_friction(bond, brc_lanes_all(area), all, &q, &sum);
+    vgcm_lanes_friction(bond, false, brc_lanes_all(area), all, &q, &sum);
     p->un = q.un[0];
     p->fn = kn * q.normal_force[0];
     p->fs = ks * q.s[0];

@@ -7,8 +7,6 @@
 
 #include <stdlib.h>
 
-/* A boundary facet faces a platen when its normal is within 30 degrees of the platen's. */
-static const double FACING = 0.86602540378443864676;
 /* Facets below this part of the mean area are points and lines that rounding has left. */
 static const double LEAST_AREA = 1e-12;
 /* Mean cosine between facets and lines of centres above which the cells are a Laguerre diagram with
@@ -221,45 +219,43 @@ static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
     return code;
 }
 
-static bool is_facing(const struct brc_facets *facets, size_t facet,
-                      const struct brc_platen *platen)
+/* Height of a grain's centre over a platen; false: beyond a sharp edge. */
+static bool centre_height(const struct brc_sim *sim, int32_t cell, const struct brc_platen *platen,
+                          double *height)
 {
-    return !is_inner(facets, facet) && brc_dot(facets->normal[facet], platen->n) < -FACING;
+    double normal[3];
+    return brc_platen_height(platen, sim->bodies.x[platen->body], sim->bodies.x[cell], height,
+                             normal);
 }
 
-static double height_of(const struct brc_bodies *b, size_t body, const struct brc_platen *platen)
-{
-    double r[3];
-    brc_sub(r, b->x[body], b->x[platen->body]);
-    return brc_dot(r, platen->n);
-}
-
-static double offset_of(const struct brc_bodies *b, const double x[3],
-                        const struct brc_platen *platen)
-{
-    double r[3];
-    brc_sub(r, x, b->x[platen->body]);
-    return fabs(brc_dot(r, platen->across));
-}
-
-/* Drops the points outside the platen's width and grips the rest on its plane. */
+/* Drops the points beyond the platen's sharp edges. Where the platen is bonded the rest begin on
+ * its surface: they are held as they lie, without a force. */
 static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *platen, double above)
 {
     struct brc_contacts *c = &sim->platens;
     const struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
     size_t to = (size_t)c->p0[i], end = to + (size_t)c->np[i];
-    double t[3], x[3];
+    double t[3], x[3], gap, normal[3];
     brc_cross(t, f->n[i], f->s[i]);
     for (size_t j = to; j < end; j++) {
+        double s = p->law[j][VGCM_AT_S], u = p->law[j][VGCM_AT_T], h = p->h[j];
         brc_copy(x, sim->bodies.x[c->a[i]]);
-        brc_axpy(x, p->law[j][VGCM_AT_S], f->s[i]);
-        brc_axpy(x, p->law[j][VGCM_AT_T], t);
-        if (offset_of(&sim->bodies, x, platen) > platen->half_width)
+        brc_axpy(x, s, f->s[i]);
+        brc_axpy(x, u, t);
+        brc_axpy(x, h, f->n[i]);
+        if (!brc_platen_height(platen, sim->bodies.x[platen->body], x, &gap, normal))
             continue;
-        p->law[to][VGCM_AT_S] = p->law[j][VGCM_AT_S];
-        p->law[to][VGCM_AT_T] = p->law[j][VGCM_AT_T];
-        p->h[to] = platen->bonding == BRC_BONDING_NONE ? p->h[j] : above;
+        if (platen->bonding != BRC_BONDING_NONE && vgcm_platen_is_curved(platen)) {
+            s -= gap * brc_dot(normal, f->s[i]);
+            u -= gap * brc_dot(normal, t);
+            h -= gap * brc_dot(normal, f->n[i]);
+        } else if (platen->bonding != BRC_BONDING_NONE) {
+            h = above; /* to the last bit */
+        }
+        p->law[to][VGCM_AT_S] = s;
+        p->law[to][VGCM_AT_T] = u;
+        p->h[to] = h;
         p->law[to++][VGCM_AREA] = p->law[j][VGCM_AREA];
     }
     c->np[i] = (int32_t)(to - (size_t)c->p0[i]);
@@ -278,61 +274,60 @@ static void set_platen_stiffness(struct brc_contacts *c, size_t i, const struct 
     brc_set(c->k[i], k * f->moment[i][VGCM_A], k * moment, 0);
 }
 
-static int platen_contact(struct brc_sim *sim, const struct vgcm_law *law, size_t i)
+/* The points of the boundary facets of a grain that face a platen. */
+static int platen_contact(struct brc_sim *sim, const struct vgcm_law *law, size_t i,
+                          const struct brc_facing *facing, size_t n)
 {
     struct brc_contacts *c = &sim->platens;
     struct vgcm_contacts *f = vgcm_columns(c);
-    const struct brc_facets *facets = &sim->specimen->facets;
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[i]);
-    size_t cell = (size_t)c->a[i];
-    double above = height_of(&sim->bodies, cell, platen);
-    double least = LEAST_DISTANCE * volume_radius(facets->volume[cell]);
+    int32_t cell = c->a[i];
+    double above, least = LEAST_DISTANCE * volume_radius(sim->specimen->facets.volume[cell]);
+    centre_height(sim, cell, platen, &above);
     brc_scale(f->n[i], platen->n, -1);
     brc_copy(f->s[i], platen->across);
     f->phase[i] = VGCM_POINTS;
     f->kn[i] = law->e_bar / fmax(above, least); /* eq:vgcm:28 */
-    for (size_t k = facets->cell_first[cell]; k < facets->cell_first[cell + 1]; k++)
-        if (is_facing(facets, (size_t)facets->cell_facet[k], platen))
-            BRC_TRY(add_points(sim, c, i, (size_t)facets->cell_facet[k], sim->bodies.x[cell], 1));
+    for (size_t k = 0; k < n; k++)
+        BRC_TRY(add_points(sim, c, i, (size_t)facing[k].facet, sim->bodies.x[cell], 1));
     fit_points(sim, i, platen, above);
     set_moments(c, i);
     set_platen_stiffness(c, i, law);
     return 0;
 }
 
-/* Contacts of all grains with a facet that faces a platen; NULL: counts them. */
-static size_t facing_pairs(const struct brc_sim *sim, int32_t (*pair)[2])
+/* One contact for each grain and platen, of all the facets that face it, which follow each other in
+ * the list. */
+static int bond_platens(struct brc_sim *sim, const struct vgcm_law *law)
 {
-    const struct brc_facets *facets = &sim->specimen->facets;
-    size_t n = 0;
-    for (size_t cell = 0; cell < facets->n_cells; cell++) {
-        for (int p = 0; p < sim->rig.n_platens; p++) {
-            bool faces = false;
-            for (size_t k = facets->cell_first[cell]; k < facets->cell_first[cell + 1]; k++)
-                faces |= is_facing(facets, (size_t)facets->cell_facet[k], &sim->rig.platen[p]);
-            if (faces && pair) {
-                pair[n][0] = (int32_t)cell;
-                pair[n][1] = sim->rig.platen[p].body;
-            }
-            n += faces;
-        }
+    struct brc_facing *facing = NULL;
+    size_t n_facing = 0, n = 0;
+    BRC_TRY(brc_platens_facing(sim, &facing, &n_facing));
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, n_facing, sizeof *pair);
+    int code = pair ? 0 : BRC_ERR_MEMORY;
+    for (size_t k = 0; code == 0 && k < n_facing; k++) {
+        if (n > 0 && pair[n - 1][0] == facing[k].cell && pair[n - 1][1] == facing[k].body)
+            continue;
+        pair[n][0] = facing[k].cell;
+        pair[n++][1] = facing[k].body;
     }
-    return n;
+    if (code == 0)
+        code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
+    for (size_t i = 0, k = 0; code == 0 && i < n; i++) {
+        size_t first = k;
+        while (k < n_facing && facing[k].cell == pair[i][0] && facing[k].body == pair[i][1])
+            k++;
+        code = platen_contact(sim, law, i, facing + first, k - first);
+    }
+    free(facing);
+    free(pair);
+    return code;
 }
 
 int vgcm_contacts_bond(struct brc_sim *sim, const struct vgcm_law *law)
 {
     BRC_TRY(bond_pairs(sim, law));
-    size_t n = facing_pairs(sim, NULL);
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, n, sizeof *pair);
-    if (!pair)
-        return BRC_ERR_MEMORY;
-    facing_pairs(sim, pair);
-    int code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
-    for (size_t i = 0; code == 0 && i < n; i++)
-        code = platen_contact(sim, law, i);
-    free(pair);
-    BRC_TRY(code);
+    BRC_TRY(bond_platens(sim, law));
     BRC_TRY(brc_contacts_compact(sim->ctx, &sim->pairs));
     return brc_contacts_compact(sim->ctx, &sim->platens);
 }
@@ -343,7 +338,7 @@ static double touching_distance(const struct brc_sim *sim, const int32_t pair[2]
     const struct vgcm_bodies *columns = sim->bodies.model_columns;
     double touch = columns->radius[pair[0]], branch[3];
     if ((size_t)pair[1] >= sim->bodies.n_grains) {
-        *now = height_of(&sim->bodies, (size_t)pair[0], brc_sim_platen(sim, pair[1]));
+        centre_height(sim, pair[0], brc_sim_platen(sim, pair[1]), now);
         return touch;
     }
     brc_sub(branch, sim->bodies.x[pair[1]], sim->bodies.x[pair[0]]);
@@ -361,12 +356,10 @@ static bool must_stay(const struct brc_contacts *c, size_t contact, bool is_plat
 
 static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
 {
-    double now, touch = touching_distance(sim, pair, &now);
-    if ((size_t)pair[1] >= sim->bodies.n_grains) {
-        const struct brc_platen *platen = brc_sim_platen(sim, pair[1]);
-        if (offset_of(&sim->bodies, sim->bodies.x[pair[0]], platen) > platen->half_width)
-            return false;
-    }
+    double now, touch = touching_distance(sim, pair, &now), height;
+    bool is_platen = (size_t)pair[1] >= sim->bodies.n_grains;
+    if (is_platen && !centre_height(sim, pair[0], brc_sim_platen(sim, pair[1]), &height))
+        return false; /* it may meet the side of a strip, which is no part of the surface */
     return now < touch + sim->skin;
 }
 

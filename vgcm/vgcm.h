@@ -146,6 +146,19 @@ static inline struct vgcm_points *vgcm_point_columns(const struct brc_contacts *
     return c->point_columns;
 }
 
+/* What holds a contact at a platen: grains that came near later are not held. */
+static inline enum brc_bonding vgcm_platen_bonding(const struct brc_contacts *c, size_t i,
+                                                   const struct brc_platen *platen)
+{
+    return vgcm_columns(c)->phase[i] == VGCM_SPHERE ? BRC_BONDING_NONE : platen->bonding;
+}
+
+static inline bool vgcm_platen_is_curved(const struct brc_platen *platen)
+{
+    return platen->surface == BRC_SURFACE_CYLINDER ||
+           (platen->surface == BRC_SURFACE_STRIP && platen->edge_radius > 0);
+}
+
 /* model.c */
 void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *params);
 

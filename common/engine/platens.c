@@ -49,10 +49,10 @@ int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_
         for (int k = 0; list && k < sim->rig.n_platens && f->cell[i][1] < 0; k++) {
             const struct brc_platen *p = &sim->rig.platen[k];
             double h, normal[3];
-            bool is_there =
-                brc_platen_height(p, sim->bodies.x[p->body], f->centroid[i], &h, normal);
+            /* beyond a sharp edge, too: some of its points may lie within */
+            brc_platen_height(p, sim->bodies.x[p->body], f->centroid[i], &h, normal);
             double cosine = -brc_dot(f->normal[i], normal);
-            if (!is_there || !(cosine > FACING))
+            if (!(cosine > FACING))
                 continue;
             struct brc_facing *grown = brc_grown(sim->ctx, list, &cap, used + 1, sizeof *list);
             if (!grown)
