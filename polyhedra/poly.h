@@ -56,11 +56,13 @@
          "length that makes eq 14 a torque; 0: the strain length", "bonds=on, torsion=on")        \
     CHOICE(features, "closed|strict|merged", "merged",                                            \
            "feature pairs that are springs: all within reach, eq 1; feet strictly inside; each "  \
-           "physical contact once, with a continuous force")                                      \
+           "physical contact once, with a continuous force",                                      \
+           .flags = BRC_PARAM_AXIS)                                                               \
     CHOICE(evaluation, "auto|literal|condensed", "auto",                                          \
            "bond and springs of a pair: each at each step; or, while the same ones act, their "   \
            "sum, linear in the motion since all were computed; auto: condensed where features "   \
-           "are not closed, in the quasi-static regime")                                          \
+           "are not closed, in the quasi-static regime",                                          \
+           .flags = BRC_PARAM_AXIS)                                                               \
     REAL(condensed_path, "1", "0.005", "(0, 0.05]",                                               \
          "condensed: relative path, in radii R, until all are computed anew",                     \
          "evaluation=auto|condensed, features=strict|merged, evaluation=condensed or "            \

@@ -30,11 +30,12 @@ enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
          "kind=*, loading=adaptive")                                                             \
     REAL(rate_max, "1/s", "1e-3 1/s", "(0, inf)", "adaptive: largest strain rate",               \
          "kind=*, loading=adaptive")                                                             \
-    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain", "kind=*")    \
+    REAL(strain_max, "1", "0.02", "(0, 10)", "the test ends at this platen strain", "kind=*",    \
+         .flags = BRC_PARAM_MAY_CHANGE)                                                          \
     REAL(stop_drop, "1", "0.5", "[0, 1)",                                                        \
          "the test ends when the load has fallen to this part of "                               \
          "its peak; 0: never",                                                                   \
-         "kind=*")                                                                               \
+         "kind=*", .flags = BRC_PARAM_MAY_CHANGE)                                                \
     REAL(friction, "1", "0", "[0, 10]", "friction coefficient of the platens", "kind=*")         \
     CHOICE(grip, "axial|full", "axial",                                                          \
            "platens hold only the axial motion of the end grains, or all of it", "kind=*")       \

@@ -50,11 +50,14 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
     CHOICE(                                                                                       \
         simd, "auto|base|avx2|avx512", "auto",                                                    \
         "instructions that hot loops use; the same bits with each of them; where a loop has no "  \
-        "AVX-512 build, avx512 runs its AVX2 one")                                                \
-    INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps")           \
+        "AVX-512 build, avx512 runs its AVX2 one",                                                \
+        .flags = BRC_PARAM_MAY_CHANGE)                                                            \
+    INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps",           \
+        .flags = BRC_PARAM_MAY_CHANGE)                                                            \
     REAL(checkpoint, "s", "5 min", "[0, inf)",                                                    \
-         "elapsed time between saved states; 0: none by time")                                    \
-    INT(checkpoint_steps, "0", "[0, 2000000000]", "steps between saved states; 0: none by steps")
+         "elapsed time between saved states; 0: none by time", .flags = BRC_PARAM_MAY_CHANGE)     \
+    INT(checkpoint_steps, "0", "[0, 2000000000]", "steps between saved states; 0: none by steps", \
+        .flags = BRC_PARAM_MAY_CHANGE)
 
 struct brc_run_params {
     BRC_PARAM_MEMBERS(BRC_RUN_PARAMS)

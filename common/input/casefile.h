@@ -122,7 +122,8 @@ int brc_casefile_remove(struct brc_context *ctx, struct brc_casefile *c, const c
                         const char *key, struct brc_param_list list);
 /* Valid UTF-8 without control characters, but for line breaks and tabs. */
 bool brc_casefile_is_text(const char *text);
-/* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule. */
+/* The list's key that an entry means: a: {rule: x} stands for a where there is no a_rule, and an
+ * older name for the present one. */
 const char *brc_casefile_key(const struct brc_casefile_entry *e, struct brc_param_list list);
 void brc_casefile_free(struct brc_casefile *c);
 

@@ -57,6 +57,8 @@ int brc_casefile_section(struct brc_context *ctx, const struct brc_casefile *c, 
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "%s: %s.%s: given twice, first in line %d; keep one of the two", where,
                      section, key, twin);
+        if (!brc_params_find(list, e->key) && brc_params_renamed(list, e->key))
+            brc_log(ctx, "%s: %s.%s is called %s now", where, section, e->key, key);
         BRC_TRY(brc_params_set(ctx, list, values, section, key, e->text, where));
     }
     return check_required(ctx, c, section, list);

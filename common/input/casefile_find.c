@@ -34,9 +34,12 @@ const struct brc_casefile_place *brc_casefile_find_section(const struct brc_case
 
 const char *brc_casefile_key(const struct brc_casefile_entry *e, struct brc_param_list list)
 {
-    bool is_short =
-        *e->parent && !brc_params_find(list, e->key) && brc_params_find(list, e->parent);
-    return is_short ? e->parent : e->key;
+    const struct brc_param *renamed = brc_params_renamed(list, e->key);
+    if (brc_params_find(list, e->key))
+        return e->key;
+    if (*e->parent && brc_params_find(list, e->parent))
+        return e->parent;
+    return renamed ? renamed->key : e->key;
 }
 
 const struct brc_casefile_entry *brc_casefile_find_entry(const struct brc_casefile *c,

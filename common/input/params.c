@@ -357,6 +357,14 @@ const struct brc_param *brc_params_find(struct brc_param_list list, const char *
     return NULL;
 }
 
+const struct brc_param *brc_params_renamed(struct brc_param_list list, const char *key)
+{
+    for (int i = 0; i < list.n; i++)
+        if (list.params[i].renamed && strcmp(list.params[i].renamed, key) == 0)
+            return &list.params[i];
+    return NULL;
+}
+
 /* What is allowed, where the message does not say it yet. */
 static void add_range(struct brc_context *ctx, const struct brc_param *p)
 {
@@ -499,6 +507,11 @@ static int check_declaration(struct brc_context *ctx, struct brc_param_list list
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the key is not in snake case", place);
     if (brc_params_find(list, p->key) != p)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the key is declared twice", place);
+    if (p->renamed && brc_params_find(list, p->renamed))
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the older name '%s' is a key", place, p->renamed);
+    if ((p->flags & BRC_PARAM_FILE && p->kind != BRC_TEXT) ||
+        (p->flags & BRC_PARAM_AXIS && p->kind != BRC_CHOICE && p->kind != BRC_FLAG))
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the flags do not fit the kind", place);
     if (!p->meaning || !*p->meaning)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the meaning is missing", place);
     if (p->offset + kind_size(p->kind) > list.owner_size)

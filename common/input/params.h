@@ -46,6 +46,16 @@ struct brc_param {
      * another section is "section.key"; a value is a choice, auto or 0. To give the key elsewhere
      * is an error, see applies.h. */
     const char *applies;
+    unsigned flags;      /* enum brc_param_flags; last in a row: "meaning", .flags = ... */
+    const char *renamed; /* the key's name in older cases, which is still read; else NULL */
+};
+
+/* What others must know of a key stands with its declaration, so that a new key is complete in one
+ * place: lists of names elsewhere went stale without a word. */
+enum brc_param_flags {
+    BRC_PARAM_MAY_CHANGE = 1, /* may differ when a run resumes: no state depends on it */
+    BRC_PARAM_AXIS = 2,       /* a choice that `breccia converge` varies unless told otherwise */
+    BRC_PARAM_FILE = 4        /* TEXT: a file; what counts for a state is what it holds */
 };
 
 struct brc_param_list {
@@ -58,7 +68,8 @@ struct brc_param_list {
         (list), (int)(sizeof(list) / sizeof(list)[0]), sizeof(owner) \
     }
 
-/* After what is named here come the meaning and, where it is not always, when the key applies. */
+/* After what is named here come the meaning, when the key applies where it is not always, and flags
+ * and an older name by their designators. */
 #define BRC_PARAM_M_REAL(name, u, d, r, ...)  double name;
 #define BRC_PARAM_M_INT(name, d, r, ...)      int name;
 #define BRC_PARAM_M_CHOICE(name, c, d, ...)   int name;
@@ -112,6 +123,8 @@ int brc_params_quantity(struct brc_context *ctx, const char *text, const char *u
                         const char *where);
 /* The param of this key, NULL when there is none. */
 const struct brc_param *brc_params_find(struct brc_param_list list, const char *key);
+/* The param that had this key as its name before, NULL when there is none. */
+const struct brc_param *brc_params_renamed(struct brc_param_list list, const char *key);
 /* "; did you mean 'key'?" for the nearest key, or ""; returns hint. */
 const char *brc_params_hint(struct brc_param_list list, const char *key, char hint[BRC_HINT_SIZE]);
 /* The param whose meaning has most of the words of the key, NULL when it has none of 4 letters. */

@@ -45,9 +45,10 @@ void brc_params_print(FILE *out, const char *title, struct brc_param_list list)
             "allowed", w[3], "unit", "meaning");
     for (int i = 0; i < list.n; i++) {
         const struct brc_param *p = &list.params[i];
-        fprintf(out, "  %-*s  %-*s  %-*s  %-*s  %s%s%s%s\n", w[0], p->key, w[1], default_shown(p),
+        fprintf(out, "  %-*s  %-*s  %-*s  %-*s  %s%s%s%s%s\n", w[0], p->key, w[1], default_shown(p),
                 w[2], allowed_text(p), w[3], unit_shown(p), p->meaning,
                 p->applies ? " [only with " : "", p->applies ? p->applies : "",
-                p->applies ? "]" : "");
+                p->applies ? "]" : "",
+                p->flags & BRC_PARAM_MAY_CHANGE ? " [may change with --resume]" : "");
     }
 }

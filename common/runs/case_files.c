@@ -5,11 +5,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-bool brc_case_names_file(const char *section, const struct brc_param *p)
-{
-    return p->kind == BRC_TEXT && strcmp(section, "specimen") == 0;
-}
-
 /* A case that comes through a pipe has no folder of its own. */
 static bool has_folder(const char *path)
 {
@@ -40,7 +35,7 @@ int brc_case_find_files(struct brc_context *ctx, struct brc_case *run_case)
 {
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_case_names_file("specimen", p))
+        if (p->flags & BRC_PARAM_FILE)
             BRC_TRY(find_file(ctx, run_case, p->key, (char *)&run_case->specimen + p->offset));
     }
     return 0;
@@ -58,7 +53,7 @@ bool brc_case_is_input(const struct brc_case *run_case, const char *path)
     bool is_input = brc_case_is_same_file(run_case->file.path, path);
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_case_names_file("specimen", p))
+        if (p->flags & BRC_PARAM_FILE)
             is_input = is_input ||
                        brc_case_is_same_file((const char *)&run_case->specimen + p->offset, path);
     }

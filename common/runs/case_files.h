@@ -5,8 +5,6 @@
 
 #include "common/runs/case.h"
 
-/* The key holds the name of a file. */
-bool brc_case_names_file(const char *section, const struct brc_param *p);
 /* Names of files of the filled case as the working folder sees them. Done by brc_case_read. */
 int brc_case_find_files(struct brc_context *ctx, struct brc_case *run_case);
 /* Two paths lead to one file that is there. */

@@ -79,7 +79,7 @@ static int keep_files(struct brc_context *ctx, const struct brc_case *run_case, 
 {
     for (int i = 0; i < brc_specimen_param_list.n; i++) {
         const struct brc_param *p = &brc_specimen_param_list.params[i];
-        if (brc_case_names_file("specimen", p))
+        if (p->flags & BRC_PARAM_FILE)
             BRC_TRY(keep_file(ctx, c, p, (const char *)&run_case->specimen + p->offset, dir));
     }
     return 0;

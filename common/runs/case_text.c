@@ -2,7 +2,6 @@
 #include "common/runs/case_text.h"
 
 #include "common/rigs/loading.h"
-#include "common/runs/case_files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +21,7 @@ static char *add_section(struct brc_context *ctx, char *text, const char *sectio
     }
     grown[used] = '\0';
     for (int i = 0; i < list.n; i++) {
-        if (brc_case_names_file(section, &list.params[i]))
+        if (list.params[i].flags & BRC_PARAM_FILE)
             continue;
         brc_params_text(&list.params[i], values, value, sizeof value);
         int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
@@ -52,16 +51,19 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
     return text;
 }
 
-/* Keys that may differ between the parts of one run. */
-static bool may_change(const char *line, size_t key_length)
+/* Whether the "section.key" that the line begins with may differ between the parts of one run. */
+static bool may_change(const char *line)
 {
-    static const char *const keys[] = {"test.strain_max", "test.stop_drop",       "run.max_steps",
-                                       "run.checkpoint",  "run.checkpoint_steps", "run.simd",
-                                       "specimen.cache"};
-    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
-        if (strlen(keys[i]) == key_length && strncmp(line, keys[i], key_length) == 0)
-            return true;
-    return false;
+    char section[BRC_CASEFILE_KEY_SIZE], key[BRC_CASEFILE_KEY_SIZE];
+    struct brc_param_list list;
+    size_t dot = strcspn(line, ". \n");
+    if (line[dot] != '.')
+        return false;
+    snprintf(section, sizeof section, "%.*s", (int)dot, line);
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(line + dot + 1, " "), line + dot + 1);
+    const struct brc_param *p =
+        brc_case_find_section(section, &list) < 0 ? NULL : brc_params_find(list, key);
+    return p && p->flags & BRC_PARAM_MAY_CHANGE;
 }
 
 int brc_case_same(struct brc_context *ctx, const char *saved, const char *now)
@@ -69,7 +71,7 @@ int brc_case_same(struct brc_context *ctx, const char *saved, const char *now)
     while (*saved && *now) {
         size_t a = strcspn(saved, "\n"), b = strcspn(now, "\n"), key = strcspn(now, " ");
         bool equal = a == b && strncmp(saved, now, a) == 0;
-        bool is_allowed = may_change(saved, strcspn(saved, " ")) && may_change(now, key);
+        bool is_allowed = strncmp(saved, now, key + 1) == 0 && may_change(now);
         if (!equal && !is_allowed)
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "the saved state was made with '%.*s', the case says '%.*s'; resume with "

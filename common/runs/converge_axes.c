@@ -11,12 +11,7 @@
 
 /* Ladders of every case. */
 static const char *const ladders[] = {"step", "loading", "rate", "grains"};
-/* Choices of a model that are axes unless --axes says otherwise. */
-static const char *const choices[] = {"points", "features", "storage", "evaluation"};
-enum {
-    N_LADDERS = sizeof ladders / sizeof ladders[0],
-    N_CHOICES = sizeof choices / sizeof choices[0]
-};
+enum { N_LADDERS = sizeof ladders / sizeof ladders[0] };
 
 enum { MAX_LINES = 16 }; /* overrides of a run */
 enum { COARSEST = 64 };  /* loading and rate, times that of the case */
@@ -87,9 +82,12 @@ int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_op
         return 0;
     for (int i = 0; i < N_LADDERS; i++)
         BRC_TRY(add_axis(ctx, axes, ladders[i], strlen(ladders[i])));
-    for (int i = 0; i < N_CHOICES; i++)
-        if (is_axis(models, n_models, choices[i]))
-            BRC_TRY(add_axis(ctx, axes, choices[i], strlen(choices[i])));
+    for (int i = 0; i < n_models; i++)
+        for (int k = 0; k < models[i].model->params.n; k++) {
+            const struct brc_param *p = &models[i].model->params.params[k];
+            if (p->flags & BRC_PARAM_AXIS)
+                BRC_TRY(add_axis(ctx, axes, p->key, strlen(p->key)));
+        }
     return 0;
 }
 

@@ -31,15 +31,15 @@ enum { BRC_MAX_GRAINS = 10000000 };
         "test, 64 in others, and 30 for a mesh, as in gt12",                                       \
         "shape=cylinder")                                                                          \
     TEXT(planes, "", "polyhedron: file of planes, one 'nx ny nz d' a line, n . x <= d, in metres", \
-         "shape=polyhedron, grains=packing|grid|mesh|points")                                      \
+         "shape=polyhedron, grains=packing|grid|mesh|points", .flags = BRC_PARAM_FILE)             \
     CHOICE(grains, "packing|grid|mesh|points|tess", "packing",                                     \
            "packing: spheres grown to contact, Laguerre cells; grid: one random seed per cubic "   \
            "cell, Voronoi cells; mesh: extruded triangles of a disc; points: seeds of a file; "    \
            "tess: cells and shape of a Neper file")                                                \
     TEXT(points, "", "points: file of seeds, 'x y z' or 'x y z radius' a line, in metres",         \
-         "grains=points")                                                                          \
+         "grains=points", .flags = BRC_PARAM_FILE)                                                 \
     TEXT(tess, "", "tess: tessellation file of Neper (.tess), three-dimensional, flat faces",      \
-         "grains=tess")                                                                            \
+         "grains=tess", .flags = BRC_PARAM_FILE)                                                   \
     REAL(tess_unit, "m", "1 m", "[1e-12, 1e12]", "tess: what the length 1 is in the file",         \
          "grains=tess")                                                                            \
     FLAG(tess_spheres, "off", "tess: weights of the seeds are radii of spheres", "grains=tess")    \
@@ -61,7 +61,7 @@ enum { BRC_MAX_GRAINS = 10000000 };
          "facets below this part of the mean area are no contacts",                                \
          "grains=packing|grid|points|tess")                                                        \
     FLAG(cache, "on", "keep finished packings on disk (BRECCIA_CACHE, else ~/.cache/breccia)",     \
-         "grains=packing")
+         "grains=packing", .flags = BRC_PARAM_MAY_CHANGE)
 
 struct brc_specimen_params {
     BRC_PARAM_MEMBERS(BRC_SPECIMEN_PARAMS)

@@ -2,17 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What breccia does in one process does without MPI: it needs no home folder, no temporary folder and
 # no working MPI, leaves no session folder, and runs side by side by the dozen.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 
 cat >case.yaml <<'END'
 breccia: 1
@@ -27,9 +17,6 @@ END
 # process
 bare() {
     env -u HOME -u XDG_CACHE_HOME -u BRECCIA_CACHE OMPI_MCA_pml=none "$@"
-}
-good() {
-    "$@" >said.txt 2>&1 || { fail "$*"; sed 's/^/  | /' said.txt; }
 }
 # every command, with results into the folder that is given
 all_commands() {

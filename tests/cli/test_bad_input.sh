@@ -2,18 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Bad input of every kind: the documented exit status, one message that says what, where, what is
 # allowed and what to do, and a folder of results that is as it was before.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export BRECCIA_CACHE=$folder/cache
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 
 # every file under the folder of results with its content; of the log the name only where $1 says so
 contents() {

@@ -1,26 +1,7 @@
-#!/bin/sh
+#!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The command line: exit statuses, messages, files, and that nothing is overwritten or lost.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-# expect STATUS TEXT COMMAND...: the status, and a line that holds the text on either stream
-expect() {
-    status=$1 text=$2
-    shift 2
-    said=$("$@" 2>&1)
-    got=$?
-    if [ $got -ne "$status" ] || ! printf '%s\n' "$said" | grep -qF -- "$text"; then
-        echo "FAILED: $*"
-        echo "  status $got, expected $status; expected the text: $text"
-        printf '%s\n' "$said" | sed 's/^/  | /'
-        failures=$((failures + 1))
-    fi
-}
+. tests/cli/begin.sh
 
 # one error is one line
 expect_one_line() {

@@ -1,30 +1,7 @@
-#!/bin/sh
+#!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # breccia converge: files and table of a small ladder, a stop and what follows it, bad input.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect STATUS TEXT COMMAND...: the status, and a line that holds the text on either stream
-expect() {
-    status=$1 text=$2
-    shift 2
-    said=$("$@" 2>&1)
-    got=$?
-    if [ $got -ne "$status" ] || ! printf '%s\n' "$said" | grep -qF -- "$text"; then
-        fail "$*"
-        echo "  status $got, expected $status; expected the text: $text"
-        printf '%s\n' "$said" | sed 's/^/  | /'
-    fi
-}
+. tests/cli/begin.sh
 
 model=$("$breccia" models | awk 'NR == 1 { print $1 }')
 n_models=$("$breccia" models | wc -l)

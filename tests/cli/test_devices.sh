@@ -2,17 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Devices, folders, endless pipes and files that are too large, wherever a file is read: one message
 # at once, and neither the memory nor the time is used up. A pipe that ends is a file like any other.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export BRECCIA_CACHE=$folder/cache
-failures=0
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 
 # refuse TEXT COMMAND...: within seconds, in little memory, with status 3 or 4 and one line that holds
 # the text; an endless file would take either

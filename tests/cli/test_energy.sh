@@ -2,17 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A run whose energy does not add up says so on the screen, in its log and summary, and ends with status 8;
 # its results are kept. Sound runs, runs in which nothing happens, and runs without a ledger say nothing.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 
 cat >case.yaml <<'END'
 breccia: 1

@@ -1,16 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # info and export: what they say, and that tables, surfaces and tessellations are whole.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 # says TEXT COMMAND...
 says() {
     text=$1

@@ -2,17 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What reaches gnuplot is text: titles, names of cases and folders with backquotes, quotes, macros,
 # markup and newlines run no command, and stand in the pictures as they are.
-set -u
-breccia=$(realpath "$BRECCIA")
+. tests/cli/begin.sh
 command -v gnuplot >/dev/null || { echo "gnuplot is not installed: nothing to test"; exit 0; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
 
 # the text of an SVG picture that the script DIR/NAME.gp draws, with its characters restored
 words_of() {

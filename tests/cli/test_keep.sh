@@ -2,20 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The case.yaml that a run keeps makes the same run, whatever options it had and wherever its files
 # are; so does the state. The user's text and comments stay.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
+. tests/cli/begin.sh
 
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-good() {
-    "$@" >said.txt 2>&1 || { fail "$*"; sed 's/^/  | /' said.txt; }
-}
 # refuse TEXT COMMAND...
 refuse() {
     text=$1
@@ -24,9 +12,6 @@ refuse() {
         fail "not refused: $*"
     fi
     grep -qF -- "$text" said.txt || { fail "no '$text' from: $*"; sed 's/^/  | /' said.txt; }
-}
-hash_of() {
-    sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"
 }
 # repeats RUN: what run kept in the folder makes the same bits, without any option
 repeats() {

@@ -2,21 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs that `kill -9` ends at random moments go on with --resume, and end with the state hash and the
 # tables of a run that was left in peace. KILL_SEED repeats the moments of a run of this test.
-set -u
-breccia=$(realpath "$BRECCIA")
+. tests/cli/begin.sh
 seed=${KILL_SEED:-$(($(date +%s%N) % 1000000))}
 kills_wanted=${KILL_N:-20} # of each model
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
 echo "moments from KILL_SEED=$seed"
 RANDOM=$((seed % 32768))
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
 
 # the load breaks bonds over most of the way
 cat >case.yaml <<'END'
@@ -30,9 +20,6 @@ END
 
 now_ms() {
     echo $(($(date +%s%N) / 1000000))
-}
-hash_of() {
-    sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"
 }
 
 # compare_with REFERENCE RUN

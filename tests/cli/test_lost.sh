@@ -2,20 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Nothing that a run did not write is replaced or removed without --force, and an input never; what is
 # read back is what was written.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
+. tests/cli/begin.sh
 
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-good() {
-    "$@" >said.txt 2>&1 || { fail "$*"; sed 's/^/  | /' said.txt; }
-}
 contents() {
     find "$1" -type f ! -name said.txt ! -name out.txt -exec sha256sum {} + 2>/dev/null | sort
 }

@@ -2,18 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Neper's tessellations: a specimen that is written and read again is the same specimen; what is no
 # tessellation of flat convex cells is refused with the place in the file.
-set -u
-breccia=$(realpath "$BRECCIA")
-lamellae=$(realpath tests/data/lamellae.tess)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export BRECCIA_CACHE=$folder/cache
-failures=0
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
+lamellae=$tree/tests/data/lamellae.tess
 # case_file NAME SPECIMEN
 case_file() {
     printf 'breccia: 1\nspecimen: {%s}\ntest: {kind: compression, strain_max: 0.001}\n' "$2" >"$1.yaml"

@@ -2,17 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Stops: the signals of terminals and batch systems save and end with status 7; the command that is
 # printed then goes on, whatever the names; before the first step nothing is claimed and nothing left.
-set -u
-program=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export BRECCIA_CACHE=$folder/cache
-failures=0
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 write_case() {
     cat >"$1" <<'END'
 breccia: 1
@@ -48,7 +38,7 @@ stop() {
 write_case case.yaml
 for signal in INT TERM HUP USR1 USR2 XCPU; do
     # a shell without job control starts background commands with INT ignored
-    stop $signal "by $signal" env --default-signal=$signal "$program" run case.yaml --model vgcm \
+    stop $signal "by $signal" env --default-signal=$signal "$breccia" run case.yaml --model vgcm \
         --quiet -o "by $signal"
     [ -s "by $signal/state.h5" ] || fail "$signal: nothing is saved"
     grep -q "interrupted at step [0-9]*; the state is saved in by $signal" said.txt ||
@@ -57,13 +47,13 @@ done
 # the limit of processor time itself
 (
     ulimit -S -t 1
-    exec "$program" run case.yaml --model vgcm --quiet -o limited >/dev/null 2>said.txt
+    exec "$breccia" run case.yaml --model vgcm --quiet -o limited >/dev/null 2>said.txt
 )
 [ $? -eq 7 ] && [ -s limited/state.h5 ] || { fail "the limit of processor time"; cat said.txt; }
 
 # the printed command goes on, as a shell reads it: quotes, blanks, and many words
-ln -s "$program" "brec'cia \"x\""
-program="./brec'cia \"x\""
+ln -s "$breccia" "brec'cia \"x\""
+breccia="./brec'cia \"x\""
 name="it's a \"case\" \`touch OWNED\` \$(touch OWNED) \\ *.yaml"
 write_case "$name"
 dir="an o'dd 'folder' \$HOME;&|<>?[a]~"
@@ -78,7 +68,7 @@ for command in run compare; do
     model=()
     [ $command = run ] && model=(--model vgcm)
     rm -rf "$dir"
-    stop TERM "$begun" "$program" $command "$name" "${model[@]}" "${many[@]}" -o "$dir"
+    stop TERM "$begun" "$breccia" $command "$name" "${model[@]}" "${many[@]}" -o "$dir"
     grep -q "stopped$\|stopped *$" said.txt || grep -q "; go on with: " said.txt ||
         fail "$command: does not say how to go on"
     grep -qw done said.txt && fail "$command: a stopped run is done"
@@ -99,9 +89,14 @@ test: {kind: compression}
 END
 for command in "run --model vgcm" compare; do
     for signal in TERM USR1 XCPU; do
-        "$program" ${command%% *} packing.yaml ${command#"${command%% *}"} -o packed \
+        "$breccia" ${command%% *} packing.yaml ${command#"${command%% *}"} -o packed \
             --set specimen.cache=off >out.txt 2>said.txt &
-        sleep 0.5
+        # once it is the program and catches signals, however busy the machine is
+        for _ in $(seq 400); do
+            [ "$(cat /proc/$!/comm)" != bash ] && grep -q '^SigCgt:.*[1-9a-f]' /proc/$!/status && break
+            sleep 0.05
+        done
+        sleep 0.2
         kill -$signal $!
         wait $!
         [ $? -eq 7 ] || fail "$command: $signal in the packing does not end with 7"

@@ -2,17 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What cannot be written to standard output is a failure, told on standard error; descriptors that
 # are closed at the start do no harm to the files of a run.
-set -u
-breccia=$(realpath "$BRECCIA")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export BRECCIA_CACHE=$folder/cache
-failures=0
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. tests/cli/begin.sh
 cat >case.yaml <<'END'
 breccia: 1
 title: A small box
@@ -22,9 +12,6 @@ test: {kind: compression, loading: fixed, rate: 1e-4 1/s, strain_max: 0.002, sam
 output: {plots: off}
 END
 "$breccia" run case.yaml --quiet -o good >/dev/null || fail "the case itself"
-hash_of() {
-    sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"
-}
 
 # fails COMMAND...: with standard output full, and closed: status 4 and one line that says it
 fails() {

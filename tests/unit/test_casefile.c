@@ -13,7 +13,7 @@
     INT(softening, "1", "[1, 9]", "its parent is a key too")                  \
     CHOICE(softening_rule, "none|linear", "none", "a key that ends in _rule") \
     REAL3(size, "m", "1 m, 1 m, 1 m", "(0, inf)", "lengths")                  \
-    TEXT(note, "", "a text")
+    TEXT(note, "", "a text", .renamed = "remark")
 struct model {
     BRC_PARAM_MEMBERS(MODEL_PARAMS)
 };
@@ -540,6 +540,23 @@ static void odd_layouts_take_values(void **state)
     assert_true(n_good > 5000);
 }
 
+/* An older name gives the value, in messages and written places too; beside the present name it is
+ * the same key twice. */
+static void older_names_are_read(void **state)
+{
+    struct brc_casefile c;
+    struct model m = check_good("breccia: 1\nvgcm: {remark: old}\n");
+    (void)state;
+    assert_string_equal(m.note, "old");
+    check_bad("breccia: 1\nvgcm:\n  note: a\n  remark: b\n",
+              "c.yaml:4: vgcm.note: given twice, first in line 3");
+    const char text[] = "breccia: 1\nvgcm: {remark: old}\n";
+    CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, strlen(text), &c));
+    CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, "vgcm", "note", model_list, "new"));
+    assert_string_equal(brc_casefile_text(&c), "breccia: 1\nvgcm: {remark: new}\n");
+    brc_casefile_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -559,6 +576,7 @@ int main(void)
         cmocka_unit_test(sizes_are_bounded),
         cmocka_unit_test(files_are_opened),
         cmocka_unit_test(damage_is_survived),
+        cmocka_unit_test(older_names_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -321,31 +321,39 @@ static void bad_declarations_are_found(void **state)
         int code;
         const char *message;
     } bad[] = {
-        {{"Key", BRC_REAL, "m", "1 m", NULL, NULL, 0, "x", NULL}, BRC_ERR_INTERNAL, "snake case"},
-        {{"a", BRC_REAL, "m", "1 m", NULL, NULL, 0, "", NULL},
+        {{"Key", BRC_REAL, "m", "1 m", NULL, NULL, 0, .meaning = "x"},
+         BRC_ERR_INTERNAL,
+         "snake case"},
+        {{"a", BRC_REAL, "m", "1 m", NULL, NULL, 0, .meaning = ""},
          BRC_ERR_INTERNAL,
          "meaning is missing"},
-        {{"a", BRC_REAL, "m", "1 m", NULL, NULL, 4, "x", NULL},
+        {{"a", BRC_REAL, "m", "1 m", NULL, NULL, 4, .meaning = "x"},
          BRC_ERR_INTERNAL,
          "outside its struct"},
-        {{"a", BRC_REAL, "m", "1 m", "0, inf", NULL, 0, "x", NULL},
+        {{"a", BRC_REAL, "m", "1 m", "0, inf", NULL, 0, .meaning = "x"},
          BRC_ERR_INTERNAL,
          "no interval"},
-        {{"a", BRC_REAL, "m", "1 m", "[2, 1]", NULL, 0, "x", NULL},
+        {{"a", BRC_REAL, "m", "1 m", "[2, 1]", NULL, 0, .meaning = "x"},
          BRC_ERR_INTERNAL,
          "no interval"},
-        {{"a", BRC_REAL, "m", "1 m", "[2, 3] ", NULL, 0, "x", NULL},
+        {{"a", BRC_REAL, "m", "1 m", "[2, 3] ", NULL, 0, .meaning = "x"},
          BRC_ERR_INTERNAL,
          "no interval"},
-        {{"a", BRC_REAL, "mm3x", "1 m", NULL, NULL, 0, "x", NULL}, BRC_ERR_INTERNAL, "is none"},
-        {{"a", BRC_REAL, "m", "1", NULL, NULL, 0, "x", NULL},
+        {{"a", BRC_REAL, "mm3x", "1 m", NULL, NULL, 0, .meaning = "x"},
+         BRC_ERR_INTERNAL,
+         "is none"},
+        {{"a", BRC_REAL, "m", "1", NULL, NULL, 0, .meaning = "x"},
          BRC_ERR_INPUT,
          "declaration: l.a: '1' has"},
-        {{"a", BRC_REAL, "m", "1 m", "(1, 2)", NULL, 0, "x", NULL}, BRC_ERR_INPUT, "out of range"},
-        {{"a", BRC_CHOICE, "1", "b", NULL, NULL, 0, "x", NULL},
+        {{"a", BRC_REAL, "m", "1 m", "(1, 2)", NULL, 0, .meaning = "x"},
+         BRC_ERR_INPUT,
+         "out of range"},
+        {{"a", BRC_CHOICE, "1", "b", NULL, NULL, 0, .meaning = "x"},
          BRC_ERR_INTERNAL,
          "choices are missing"},
-        {{"a", BRC_CHOICE, "1", "b", NULL, "a|c", 0, "x", NULL}, BRC_ERR_INPUT, "not a choice"},
+        {{"a", BRC_CHOICE, "1", "b", NULL, "a|c", 0, .meaning = "x"},
+         BRC_ERR_INPUT,
+         "not a choice"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -389,10 +397,10 @@ static void a_value_may_be_auto(void **state)
     struct one {
         double kn, e;
     } v;
-    static const struct brc_param params[] = {
-        {"kn", BRC_REAL, "N/m", "auto", "(0, inf)", NULL, offsetof(struct one, kn), "stiffness",
-         NULL},
-        {"e", BRC_REAL, "Pa", "1 GPa", "(0, inf)", NULL, offsetof(struct one, e), "modulus", NULL}};
+    static const struct brc_param params[] = {{"kn", BRC_REAL, "N/m", "auto", "(0, inf)", NULL,
+                                               offsetof(struct one, kn), .meaning = "stiffness"},
+                                              {"e", BRC_REAL, "Pa", "1 GPa", "(0, inf)", NULL,
+                                               offsetof(struct one, e), .meaning = "modulus"}};
     const struct brc_param_list list = BRC_PARAMS(params, struct one);
     char text[64];
     (void)state;
