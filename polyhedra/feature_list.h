@@ -7,7 +7,6 @@
 
 #include "polyhedra/shape.h"
 
-enum poly_rule { POLY_CLOSED, POLY_STRICT, POLY_MERGED };
 enum poly_kind { POLY_VERTEX_A, POLY_VERTEX_B, POLY_EDGES };
 
 /* Four are enough for cores whose vertices are not nearer to each other than about R; more would

@@ -83,34 +83,6 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
 
 /* --- edges ------------------------------------------------------------------------------------ */
 
-/* Parallel edges touch in the middle of the part where they face each other. */
-static void middle_of_parallel(brc_lanes *s, brc_lanes *t, const struct poly_crossings *x)
-{
-    brc_lanes low = x->ra, high = x->ra + x->c * x->lb;
-    brc_lanes from = poly_clamp(brc_lanes_min(low, high), x->la);
-    brc_lanes to = poly_clamp(brc_lanes_max(low, high), x->la);
-    brc_lanes middle = 0.5 * (from + to);
-    *s = brc_lanes_pick(x->skew, *s, middle);
-    *t = brc_lanes_pick(x->skew, *t, poly_clamp(x->c * (middle - low), x->lb));
-}
-
-/* Edges of `closed`, where a closest point is at an end. */
-static bool touch_closed_edges(struct poly_geometry4 *t, const struct poly_pair *p,
-                               brc_lanes ends[4][3])
-{
-    struct poly_crossings x;
-    brc_lanes s, along, r[3];
-    poly_cross_edges(&x, ends);
-    poly_closest_on_edges(&s, &along, &x);
-    middle_of_parallel(&s, &along, &x);
-    brc_lanes d = poly_edge_distance(r, &x, s, along);
-    brc_mask touches = poly_overlap(t, d, r, 1 / d, p->contact_distance) & poly_positive(d);
-    poly_full_weight(t);
-    for (int k = 0; k < 3; k++)
-        t->x[k] = ends[0][k] + s * x.a[k] + 0.5 * r[k];
-    return touches[0];
-}
-
 static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
                         const struct poly_feature *f, uint8_t *active, enum poly_rule rule)
 {
@@ -122,11 +94,8 @@ static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
         poly_all3(ends[k], p->va[p->a.end[f->i][k]]);
         poly_all3(ends[2 + k], p->vb[p->b.end[f->j][k]]);
     }
-    brc_mask crosses =
-        poly_edge_geometry(&all, &len, ends, &side, brc_lanes_all(p->reach), rule == POLY_MERGED);
-    *active = !crosses[0] ? 0 : side[0] < 0 ? 2 : 1;
-    if (*active == 0 && rule == POLY_CLOSED && touch_closed_edges(&all, p, ends))
-        *active = 3;
+    brc_mask touches = poly_edge_geometry(&all, &len, ends, &side, brc_lanes_all(p->reach), rule);
+    *active = !touches[0] ? 0 : side[0] < 0 ? 2 : side[0] > 0 ? 1 : 3;
     poly_geometry_lane(t, &all, 0);
     return *active != 0;
 }

@@ -13,6 +13,9 @@
  * results scale with the sample. */
 #define POLY_PARALLEL 1e-12
 
+/* Which feature pairs are springs: README.md. */
+enum poly_rule { POLY_CLOSED, POLY_STRICT, POLY_MERGED };
+
 /* Lengths that all contacts of grains share [m]. */
 struct poly_lengths {
     double contact_distance; /* of the cores, R1 + R2: no overlap */
@@ -293,34 +296,85 @@ BRC_LANES_INLINE void poly_weigh_crossing(struct poly_geometry4 *t, const struct
     poly_axpy3(t->c, 0.5 * d, gn);
 }
 
-/* Edges p[0] p[1] of a and p[2] p[3] of b that cross with both closest points inside. The side on
- * which they met, +1 or -1, keeps edges that have passed through each other pushed back; 0: not
- * known, and known afterwards. Returns where they touch; elsewhere -delta is the path that they are
- * free for. */
-BRC_LANES_INLINE brc_mask poly_edge_geometry(struct poly_geometry4 *t,
-                                             const struct poly_lengths *len, brc_lanes p[4][3],
-                                             brc_lanes *side, brc_lanes reach, const bool merged)
+/* Edges that cross, with both closest points inside. Returns where they touch. */
+BRC_LANES_INLINE brc_mask poly_crossing_geometry(struct poly_geometry4 *t,
+                                                 const struct poly_lengths *len,
+                                                 const struct poly_crossings *x, brc_mask inside,
+                                                 const brc_lanes p0[3], brc_lanes *side,
+                                                 brc_lanes reach, const enum poly_rule rule)
 {
-    struct poly_crossings x;
-    brc_mask inside = poly_cross_edges(&x, p);
-    brc_lanes root_m = brc_lanes_sqrt(x.per_m), d = x.rm * root_m;
+    brc_lanes root_m = brc_lanes_sqrt(x->per_m), d = x->rm * root_m;
     brc_lanes met = brc_lanes_pick(poly_positive(-d), brc_lanes_all(-1), brc_lanes_all(1));
     *side = brc_lanes_pick(poly_positive(brc_lanes_abs(*side)), *side, met);
     d *= *side;
-    brc_mask touches = inside & poly_overlap(t, d, x.m, root_m * *side, len->contact_distance) &
+    brc_mask touches = inside & poly_overlap(t, d, x->m, root_m * *side, len->contact_distance) &
                        brc_lanes_less(brc_lanes_all(-len->contact_distance), d);
-    t->valid_path = merged ? t->delta : brc_lanes_min(t->delta, poly_path_inside(&x, reach, d));
+    t->valid_path =
+        rule == POLY_MERGED ? t->delta : brc_lanes_min(t->delta, poly_path_inside(x, reach, d));
     for (int k = 0; k < 3; k++)
-        t->x[k] = p[0][k] + x.ta * x.a[k] + 0.5 * d * t->n[k];
+        t->x[k] = p0[k] + x->ta * x->a[k] + 0.5 * d * t->n[k];
     poly_full_weight(t);
-    if (merged)
-        poly_weigh_crossing(t, &x, len->fade, d);
-    touches &= poly_positive(t->weight);
-    if (brc_lanes_any(~touches)) {
+    if (rule == POLY_MERGED)
+        poly_weigh_crossing(t, x, len->fade, d);
+    return touches & poly_positive(t->weight);
+}
+
+/* Edges of `closed`, wherever their closest points are; parallel ones touch in the middle of the
+ * part where they face each other. */
+BRC_LANES_INLINE brc_mask poly_closed_geometry(struct poly_geometry4 *t,
+                                               const struct poly_lengths *len,
+                                               const struct poly_crossings *x,
+                                               const brc_lanes p0[3])
+{
+    brc_lanes s, u, r[3], low = x->ra, high = x->ra + x->c * x->lb;
+    poly_closest_on_edges(&s, &u, x);
+    brc_lanes middle = 0.5 * (poly_clamp(brc_lanes_min(low, high), x->la) +
+                              poly_clamp(brc_lanes_max(low, high), x->la));
+    s = brc_lanes_pick(x->skew, s, middle);
+    u = brc_lanes_pick(x->skew, u, poly_clamp(x->c * (middle - low), x->lb));
+    brc_lanes d = poly_edge_distance(r, x, s, u);
+    brc_mask touches = poly_overlap(t, d, r, 1 / d, len->contact_distance) & poly_positive(d);
+    t->valid_path = t->delta;
+    for (int k = 0; k < 3; k++)
+        t->x[k] = p0[k] + s * x->a[k] + 0.5 * r[k];
+    poly_full_weight(t);
+    return touches;
+}
+
+BRC_LANES_INLINE void poly_pick_geometry(struct poly_geometry4 *t, brc_mask m,
+                                         const struct poly_geometry4 *other)
+{
+    t->delta = brc_lanes_pick(m, t->delta, other->delta);
+    t->weight = brc_lanes_pick(m, t->weight, other->weight);
+    for (int k = 0; k < 3; k++) {
+        t->n[k] = brc_lanes_pick(m, t->n[k], other->n[k]);
+        t->x[k] = brc_lanes_pick(m, t->x[k], other->x[k]);
+    }
+}
+
+/* Edges p[0] p[1] of a and p[2] p[3] of b. The side on which crossing ones met, +1 or -1, keeps
+ * edges that have passed through each other pushed back; 0: not known, and known afterwards, but
+ * for edges of `closed` that do not cross. Returns where they touch; elsewhere -delta is the path
+ * that they are free for. */
+BRC_LANES_INLINE brc_mask poly_edge_geometry(struct poly_geometry4 *t,
+                                             const struct poly_lengths *len, brc_lanes p[4][3],
+                                             brc_lanes *side, brc_lanes reach,
+                                             const enum poly_rule rule)
+{
+    struct poly_crossings x;
+    brc_mask inside = poly_cross_edges(&x, p);
+    brc_mask touches = poly_crossing_geometry(t, len, &x, inside, p[0], side, reach, rule);
+    if (rule == POLY_CLOSED) {
+        struct poly_geometry4 closed;
+        brc_mask touches_closed = poly_closed_geometry(&closed, len, &x, p[0]);
+        poly_pick_geometry(t, touches, &closed);
+        *side = brc_lanes_where(touches, *side);
+        touches |= touches_closed;
+    } else if (brc_lanes_any(~touches)) {
         brc_lanes free = poly_path_to_inside(&x, reach, len->skin);
         brc_lanes path = brc_lanes_max(poly_edge_gap(&x, len->contact_distance), free);
         t->delta = brc_lanes_pick(touches, t->delta, -path);
-        if (merged)
+        if (rule == POLY_MERGED)
             t->fades = poly_positive(free);
     }
     poly_hide_apart(t, touches);

@@ -120,18 +120,22 @@ KERNEL(platens, platens_kernel(batch, false, false))
 KERNEL(platens_ledger, platens_kernel(batch, false, true))
 KERNEL(platens_viscous, platens_kernel(batch, true, false))
 KERNEL(platens_viscous_ledger, platens_kernel(batch, true, true))
-#define POINTS(name, ...)                                           \
-    KERNEL(points_##name, points_kernel(batch, false, __VA_ARGS__)) \
-    KERNEL(merged_##name, points_kernel(batch, true, __VA_ARGS__))
+#define POINTS(name, ...)                                                 \
+    KERNEL(closed_##name, points_kernel(batch, POLY_CLOSED, __VA_ARGS__)) \
+    LINEAR_POINTS(name, __VA_ARGS__)
+#define LINEAR_POINTS(name, ...)                                          \
+    KERNEL(strict_##name, points_kernel(batch, POLY_STRICT, __VA_ARGS__)) \
+    KERNEL(merged_##name, points_kernel(batch, POLY_MERGED, __VA_ARGS__))
 POINTS(plain, false, false, false, false)
 POINTS(viscous, false, false, true, false)
 POINTS(friction, false, true, false, false)
 POINTS(friction_ledger, false, true, false, true)
 POINTS(friction_viscous, false, true, true, false)
 POINTS(friction_viscous_ledger, false, true, true, true)
-POINTS(linearised, true, false, false, false)
-POINTS(linearised_friction, true, true, false, false)
-POINTS(linearised_friction_ledger, true, true, false, true)
+LINEAR_POINTS(linearised, true, false, false, false)
+LINEAR_POINTS(linearised_friction, true, true, false, false)
+LINEAR_POINTS(linearised_friction_ledger, true, true, false, true)
+#undef LINEAR_POINTS
 #undef POINTS
 #undef KERNEL
 
@@ -150,8 +154,8 @@ __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_li
 static struct poly_loop linearised_loop(const struct poly_params *p, bool friction, bool ledger)
 {
     static poly_kernel *const points[2][2][2] = {
-        {{points_linearised, points_linearised},
-         {points_linearised_friction, points_linearised_friction_ledger}},
+        {{strict_linearised, strict_linearised},
+         {strict_linearised_friction, strict_linearised_friction_ledger}},
         {{merged_linearised, merged_linearised},
          {merged_linearised_friction, merged_linearised_friction_ledger}}};
     return (struct poly_loop){.motion = BRC_OPTION(p->torsion) ? motion_torsion_linearised
@@ -163,18 +167,19 @@ static struct poly_loop linearised_loop(const struct poly_params *p, bool fricti
 static struct poly_loop literal_loop(const struct poly_params *p, bool friction, bool viscous,
                                      bool ledger)
 {
-    static poly_kernel *const points[2][2][2][2] = {
-        {{{points_plain, points_plain}, {points_viscous, points_viscous}},
-         {{points_friction, points_friction_ledger},
-          {points_friction_viscous, points_friction_viscous_ledger}}},
-        {{{merged_plain, merged_plain}, {merged_viscous, merged_viscous}},
-         {{merged_friction, merged_friction_ledger},
-          {merged_friction_viscous, merged_friction_viscous_ledger}}}};
+#define BY_OPTIONS(rule)                                                  \
+    {                                                                     \
+        {{rule##_plain, rule##_plain}, {rule##_viscous, rule##_viscous}}, \
+            {{rule##_friction, rule##_friction_ledger},                   \
+             {rule##_friction_viscous, rule##_friction_viscous_ledger}},  \
+    }
+    static poly_kernel *const points[3][2][2][2] = {BY_OPTIONS(closed), BY_OPTIONS(strict),
+                                                    BY_OPTIONS(merged)};
+#undef BY_OPTIONS
     static poly_kernel *const finishes[2][2] = {{finish, finish_ledger},
                                                 {finish_viscous, finish_viscous_ledger}};
     return (struct poly_loop){.motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
-                              .points =
-                                  points[p->features == POLY_MERGED][friction][viscous][ledger],
+                              .points = points[p->features][friction][viscous][ledger],
                               .finish = finishes[viscous][ledger]};
 }
 

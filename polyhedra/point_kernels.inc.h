@@ -105,7 +105,7 @@ BRC_LANES_INLINE void vertices_of_tasks(struct poly_geometry4 *t, const struct p
 }
 
 BRC_LANES_INLINE void edges_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
-                                     const struct poly_task *task, const bool merged)
+                                     const struct poly_task *task, const enum poly_rule rule)
 {
     struct poly_points *points = batch->contacts->point_columns;
     int32_t end[4][BRC_LANES], *item[BRC_LANES];
@@ -119,12 +119,12 @@ BRC_LANES_INLINE void edges_of_tasks(struct poly_geometry4 *t, const struct poly
     }
     for (int j = 0; j < 4; j++)
         brc_lanes_gather3(p[j], batch->st->global_vertices, end[j]);
-    poly_edge_geometry(t, &batch->len, p, &side, reach, merged);
+    poly_edge_geometry(t, &batch->len, p, &side, reach, rule);
     for (int32_t k = 0; k < BRC_LANES; k++) {
         if (item[k][POLY_ITEM_SIDE] != 0)
             continue;
-        item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : 1;
-        points->active[task[k].point] = side[k] < 0 ? 2 : 1;
+        item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : side[k] > 0;
+        points->active[task[k].point] = side[k] < 0 ? 2 : side[k] > 0 ? 1 : 3;
     }
 }
 
@@ -301,9 +301,9 @@ BRC_LANES_INLINE int32_t end_list(struct poly_batch *batch, int list)
     return n;
 }
 
-BRC_LANES_INLINE void points_of_list(struct poly_batch *batch, const int list, const bool merged,
-                                     const bool linearised, const bool friction, const bool viscous,
-                                     const bool ledger)
+BRC_LANES_INLINE void points_of_list(struct poly_batch *batch, const int list,
+                                     const enum poly_rule rule, const bool linearised,
+                                     const bool friction, const bool viscous, const bool ledger)
 {
     const struct poly_task *task = batch->task[list];
     int32_t n = end_list(batch, list);
@@ -312,22 +312,22 @@ BRC_LANES_INLINE void points_of_list(struct poly_batch *batch, const int list, c
         if (list == POLY_KNOWN)
             t = batch->known[k / BRC_LANES];
         else if (list == POLY_CROSSING)
-            edges_of_tasks(&t, batch, task + k, merged);
+            edges_of_tasks(&t, batch, task + k, rule);
         else
             vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT);
         act_of_points(batch, task + k, n - k, &t, linearised, friction, viscous, ledger);
     }
 }
 
-BRC_LANES_INLINE void points_kernel(struct poly_batch *batch, const bool merged,
+BRC_LANES_INLINE void points_kernel(struct poly_batch *batch, const enum poly_rule rule,
                                     const bool linearised, const bool friction, const bool viscous,
                                     const bool ledger)
 {
-    points_of_list(batch, POLY_FLAT, merged, linearised, friction, viscous, ledger);
-    if (merged)
-        points_of_list(batch, POLY_SHARP, merged, linearised, friction, viscous, ledger);
-    points_of_list(batch, POLY_CROSSING, merged, linearised, friction, viscous, ledger);
-    points_of_list(batch, POLY_KNOWN, merged, linearised, friction, viscous, ledger);
+    points_of_list(batch, POLY_FLAT, rule, linearised, friction, viscous, ledger);
+    if (rule == POLY_MERGED)
+        points_of_list(batch, POLY_SHARP, rule, linearised, friction, viscous, ledger);
+    points_of_list(batch, POLY_CROSSING, rule, linearised, friction, viscous, ledger);
+    points_of_list(batch, POLY_KNOWN, rule, linearised, friction, viscous, ledger);
 }
 
 /* Points of platens, whose friction is that of each contact. */

@@ -154,16 +154,16 @@ static double list_point(struct poly_batch *batch, int32_t i, size_t p, double r
 {
     const struct poly_points *points = batch->contacts->point_columns;
     enum poly_rule rule = rule_of(batch);
-    if (rule == POLY_CLOSED) {
-        find_literally(batch, i, p);
-        return HUGE_VAL;
-    }
     bool is_set = points->item[p][POLY_ITEM_LIST] != POLY_NO_LIST;
     if (points->kind[p] == POLY_EDGES) {
         if (!is_set)
             set_edges(batch, i, p);
         list_items(batch, points, i, p, 1);
         return 0;
+    }
+    if (rule == POLY_CLOSED) {
+        find_literally(batch, i, p);
+        return HUGE_VAL;
     }
     if (room > points->feature_valid_to[p]) {
         if (!is_set)
