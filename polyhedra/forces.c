@@ -167,7 +167,7 @@ static int prepare(struct poly_batch *batch, int32_t i)
         if (c->status[row] != BRC_INTACT)
             BRC_TRY(poly_foresee(sim, batch->st, row, false));
     }
-    batch->listed[i] = c->np[row] > 0;
+    batch->listed[i] = c->np[row] > 0; /* by the list just made */
     g->gap[lane] = rows->rebuild_at[row] - sim->bodies.path_length[batch->a[i]] -
                    sim->bodies.path_length[batch->b[i]];
     if (!batch->is_platens && g->broken[lane] > 1 && poly_params_of(sim)->breakable)

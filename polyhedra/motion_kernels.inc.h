@@ -199,8 +199,8 @@ BRC_LANES_INLINE void gather_rotation(brc_lanes r[9], double (*rotation)[3][3],
     r[8] = (brc_lanes){from[0][8], from[1][8], from[2][8], from[3][8]};
 }
 
-/* The hold of a grip is half a bond: without torsion and, held axially, without shear. The platen
- * is rigid and does not turn: its normal is the hold's. */
+/* The hold of a platen is half a bond: without torsion and, unless it holds in all directions,
+ * without shear. The platen is rigid and does not turn: its normal is the hold's. */
 BRC_LANES_INLINE void bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond_pose4 *pose,
                                      const struct brc_sim *sim, const struct numbers *i,
                                      const brc_lanes nb[3])
@@ -209,7 +209,7 @@ BRC_LANES_INLINE void bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond
     poly_scale3(back, nb, brc_lanes_all(-1));
     poly_mean_normal(pose->n, back, nb);
     for (int k = 0; k < BRC_LANES; k++)
-        if (brc_sim_platen(sim, i->b[k])->bonding == BRC_BONDING_GRIP)
+        if (brc_sim_platen(sim, i->b[k])->bonding != BRC_BONDING_FULL)
             bonds->kt[k] = 0;
 }
 

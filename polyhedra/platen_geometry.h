@@ -18,13 +18,12 @@ BRC_LANES_INLINE brc_mask poly_platen_geometry(struct poly_geometry4 *t, const s
     for (int k = 0; k < BRC_LANES; k++) {
         const struct brc_platen *platen = brc_sim_platen(sim, body[k]);
         const double *x = st->global_vertices[vertex[k]];
-        double d[3];
-        brc_sub(d, x, sim->bodies.x[body[k]]);
-        bool faces = fabs(brc_dot(d, platen->across)) <= platen->half_width;
-        height[k] = faces ? brc_dot(d, platen->n) : HUGE_VAL;
+        double n[3];
+        if (!brc_platen_height(platen, sim->bodies.x[body[k]], x, &height[k], n))
+            height[k] = HUGE_VAL; /* beyond a sharp edge */
         for (int j = 0; j < 3; j++) {
             at[j][k] = x[j];
-            normal[j][k] = platen->n[j];
+            normal[j][k] = n[j];
         }
     }
     poly_set3(v, brc_lanes_at(at[0]), brc_lanes_at(at[1]), brc_lanes_at(at[2]));

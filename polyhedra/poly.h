@@ -212,7 +212,7 @@ struct poly_scale {
 void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facets);
 void poly_scale_params(const struct poly_scale *scale, struct poly_params *params);
 
-/* rows.c: initial bonds, candidates, feature lists. */
+/* bonding.c: initial bonds. contact_points.c: contacts from the neighbour list, their points. */
 int poly_open_bonds(struct brc_sim *sim, void *state);
 int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
                      const struct brc_neighbours *platens);

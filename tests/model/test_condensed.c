@@ -184,6 +184,32 @@ static void pairs_turn(void **state)
     CHECK_NEAR_ARRAY(y, x, 3, 2e-9, 0);
 }
 
+/* Two cubes that are 0.003 R apart when their features are listed for the first time, and come
+ * nearer by 1e-4 R a step: their force after 40 steps. */
+static double force_of_neighbours(struct fixture *f, const char *evaluation)
+{
+    const double toward[3] = {-10, 0, 0}, none[3] = {0, 0, 0};
+    char settings[100];
+    snprintf(settings, sizeof settings, "radius: 1 mm; bonds: off; gn: 0 1/s; evaluation: %s",
+             evaluation);
+    fixture_grid(f, 2, 1, 1, 0.01, 0);
+    fixture_free_sim(f, &brc_model_polyhedra, settings, "dt: 1e-8 s");
+    f->sim.bodies.x[1][0] += 3e-6;
+    fixture_velocity(f, 1, toward, none);
+    fixture_steps(f, 40);
+    assert_int_equal(f->sim.pairs.n, 1);
+    return f->sim.pairs.f[0][0];
+}
+
+/* A contact whose list has just been made is linearised for the path of the nearest feature pair,
+ * not for that of an empty list. */
+static void new_lists_count(void **state)
+{
+    double literal = force_of_neighbours(*state, "literal");
+    assert_true(literal > 0);
+    CHECK_NEAR(force_of_neighbours(*state, "condensed"), literal, 0, 0.01);
+}
+
 /* The sum that is carried along is what bond and springs give literally, for the present pose. */
 static void tangent_is_the_slope(void **state)
 {
@@ -264,6 +290,7 @@ int main(void)
     const struct CMUnitTest tests[] = {FIXTURE_TEST(load_is_that_of_literal_springs),
                                        FIXTURE_TEST(bonds_begin_to_pull),
                                        FIXTURE_TEST(pairs_turn),
+                                       FIXTURE_TEST(new_lists_count),
                                        FIXTURE_TEST(the_same_springs_act),
                                        FIXTURE_TEST(tangent_is_the_slope),
                                        FIXTURE_TEST(bits_are_the_same)};

@@ -1,98 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which rows exist, and which feature pairs each of them watches. */
+/* Which contacts exist, which feature pairs each of them watches as its points, and in which order.
+ * Called by sim.c when the neighbour list is new, and by the loop; computes no force. */
 #include "polyhedra/poly.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* A facet lies on a platen when it is parallel to it and this near, in lengths of the specimen. */
-static const double PLATEN_TOLERANCE = 1e-6;
-
-/* --- bonds ------------------------------------------------------------------------------------ */
-
-static void to_frame(double r[3], const double q[4], const double v[3])
-{
-    double m[3][3];
-    brc_quat_matrix(m, q);
-    brc_mat_mul_t(r, m, v);
-}
-
-/* Material points, normals and tangents of a row's bond in the frames of its bodies; n from a. */
-static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
-                     const double at[3], const double n[3])
-{
-    const struct brc_bodies *b = &sim->bodies;
-    struct poly_rows *rows = c->model_columns;
-    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
-    double arm[3], back[3], t[3], unused[3];
-    brc_frame(t, unused, n);
-    brc_scale(back, n, -1);
-    brc_sub(arm, at, b->x[ia]);
-    to_frame(rows->bond[row] + POLY_BOND_CA, b->q[ia], arm);
-    to_frame(rows->bond[row] + POLY_BOND_NA, b->q[ia], n);
-    to_frame(rows->bond[row] + POLY_BOND_TA, b->q[ia], t);
-    brc_sub(arm, at, b->x[ib]);
-    to_frame(rows->bond[row] + POLY_BOND_CB, b->q[ib], arm);
-    to_frame(rows->bond[row] + POLY_BOND_NB, b->q[ib], back);
-    to_frame(rows->bond[row] + POLY_BOND_TB, b->q[ib], t);
-}
-
-/* Bond of two grains over a facet. */
-static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, size_t facet)
-{
-    const struct brc_facets *f = &sim->specimen->facets;
-    const struct poly_params *params = poly_params_of(sim);
-    struct brc_contacts *c = &sim->pairs;
-    struct poly_rows *rows = c->model_columns;
-    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
-    double d[3], ea = st->eroded[facet][0], eb = st->eroded[facet][1];
-    brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
-    c->facet[row] = (int32_t)facet;
-    st->n_removed += ea == 0 || eb == 0;
-    *poly_bond_area(rows, row) = f->area[facet];
-    if (params->area == POLY_AREA_ERODED)
-        *poly_bond_area(rows, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
-    *poly_bond_length(rows, row) =
-        params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
-    fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
-    if (!params->bonds || *poly_bond_area(rows, row) == 0)
-        return;
-    c->status[row] = BRC_INTACT;
-    st->n_bonds++;
-    st->mean_area += *poly_bond_area(rows, row);
-    st->mean_length += *poly_bond_length(rows, row);
-}
-
-static bool on_platen(const struct brc_sim *sim, const struct brc_platen *p, size_t facet)
-{
-    const struct brc_facets *f = &sim->specimen->facets;
-    double d[3];
-    brc_sub(d, f->centroid[facet], sim->bodies.x[p->body]);
-    return brc_dot(f->normal[facet], p->n) < -1 + PLATEN_TOLERANCE &&
-           fabs(brc_dot(d, p->n)) < PLATEN_TOLERANCE * sim->rig.length[sim->rig.axis];
-}
-
-/* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
- * distance of its centre (or the gap R) makes it. */
-static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
-                      const struct brc_platen *p, size_t facet)
-{
-    const struct brc_facets *f = &sim->specimen->facets;
-    const struct poly_params *params = poly_params_of(sim);
-    struct brc_contacts *c = &sim->platens;
-    struct poly_rows *rows = c->model_columns;
-    double d[3], n[3];
-    brc_sub(d, sim->bodies.x[c->a[row]], sim->bodies.x[p->body]);
-    brc_scale(n, p->n, -1);
-    c->facet[row] = (int32_t)facet;
-    *poly_bond_area(rows, row) =
-        params->area == POLY_AREA_FACET ? f->area[facet] : st->eroded[facet][0];
-    *poly_bond_length(rows, row) =
-        params->strain_length == POLY_LENGTH_GAP ? params->radius : brc_dot(d, p->n);
-    fix_bond(sim, c, row, f->centroid[facet], n);
-    if (p->bonding != BRC_BONDING_NONE && *poly_bond_area(rows, row) > 0)
-        c->status[row] = BRC_INTACT;
-}
 
 static int compare_pairs(const void *x, const void *y)
 {
@@ -102,61 +14,7 @@ static int compare_pairs(const void *x, const void *y)
     return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-static int open_platens(struct brc_sim *sim, struct poly_state *st, int32_t (*pair)[2],
-                        size_t *facets)
-{
-    const struct brc_facets *f = &sim->specimen->facets;
-    size_t n = 0;
-    for (size_t i = 0; i < f->n_facets; i++)
-        for (int k = 0; k < sim->rig.n_platens && f->cell[i][1] < 0; k++)
-            if (on_platen(sim, &sim->rig.platen[k], i)) {
-                pair[n][0] = f->cell[i][0];
-                pair[n][1] = sim->rig.platen[k].body;
-                facets[n++] = i;
-            }
-    int32_t(*sorted)[2] = brc_alloc(sim->ctx, n, sizeof *sorted);
-    if (sorted == NULL)
-        return BRC_ERR_MEMORY;
-    memcpy(sorted, pair, n * sizeof *sorted);
-    qsort(sorted, n, sizeof *sorted, compare_pairs);
-    int code = brc_contacts_set(sim->ctx, &sim->platens, sorted, n);
-    free(sorted);
-    for (size_t i = 0; code == 0 && i < n; i++) {
-        int64_t row = brc_contacts_find(&sim->platens, pair[i][0], pair[i][1]);
-        open_hold(sim, st, (size_t)row, brc_sim_platen(sim, pair[i][1]), facets[i]);
-    }
-    return code;
-}
-
-int poly_open_bonds(struct brc_sim *sim, void *state)
-{
-    const struct brc_facets *f = &sim->specimen->facets;
-    struct poly_state *st = state;
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, f->n_facets, sizeof *pair);
-    size_t *facets = brc_alloc(sim->ctx, f->n_facets, sizeof *facets), n = 0;
-    int code = pair != NULL && facets != NULL ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < f->n_facets; i++) {
-        if (f->cell[i][1] < 0 || !f->is_contact[i])
-            continue;
-        memcpy(pair[n], f->cell[i], sizeof *pair);
-        facets[n++] = i;
-    }
-    if (code == 0)
-        code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
-    for (size_t i = 0; code == 0 && i < n; i++)
-        open_bond(sim, st, i, facets[i]);
-    if (st->n_bonds > 0) {
-        st->mean_area /= (double)st->n_bonds;
-        st->mean_length /= (double)st->n_bonds;
-    }
-    if (code == 0)
-        code = open_platens(sim, st, pair, facets);
-    free(pair);
-    free(facets);
-    return code;
-}
-
-/* --- candidates ------------------------------------------------------------------------------- */
+/* --- contacts --------------------------------------------------------------------------------- */
 
 static bool is_kept(const struct brc_contacts *c, size_t row)
 {
@@ -169,25 +27,25 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
     return false;
 }
 
-/* The candidates, and the rows that are bonded or touch. */
+/* The neighbours, and the contacts that are bonded or touch. */
 static int merge_rows(struct brc_context *ctx, struct brc_contacts *c,
-                      const struct brc_neighbours *candidates)
+                      const struct brc_neighbours *near)
 {
-    int32_t(*pair)[2] = brc_alloc(ctx, candidates->n + c->n, sizeof *pair);
+    int32_t(*pair)[2] = brc_alloc(ctx, near->n + c->n, sizeof *pair);
     if (pair == NULL)
         return BRC_ERR_MEMORY;
     size_t n = 0, i = 0;
     for (size_t row = 0; row < c->n; row++) {
         const int32_t own[2] = {c->a[row], c->b[row]};
-        while (i < candidates->n && compare_pairs(candidates->pair[i], own) < 0)
-            memcpy(pair[n++], candidates->pair[i++], sizeof *pair);
-        bool listed = i < candidates->n && compare_pairs(candidates->pair[i], own) == 0;
+        while (i < near->n && compare_pairs(near->pair[i], own) < 0)
+            memcpy(pair[n++], near->pair[i++], sizeof *pair);
+        bool listed = i < near->n && compare_pairs(near->pair[i], own) == 0;
         i += listed;
         if (listed || is_kept(c, row))
             memcpy(pair[n++], own, sizeof *pair);
     }
-    while (i < candidates->n)
-        memcpy(pair[n++], candidates->pair[i++], sizeof *pair);
+    while (i < near->n)
+        memcpy(pair[n++], near->pair[i++], sizeof *pair);
     int code = brc_contacts_set(ctx, c, (const int32_t(*)[2])pair, n);
     free(pair);
     return code;
@@ -376,9 +234,9 @@ int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row)
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
     st->list.n = 0;
     for (size_t v = 0; v < n; v++) {
-        double d[3];
-        brc_sub(d, st->global_vertices[first + v], sim->bodies.x[c->b[row]]);
-        double height = brc_dot(d, platen->n);
+        double height, n_platen[3];
+        brc_platen_height(platen, sim->bodies.x[c->b[row]], st->global_vertices[first + v], &height,
+                          n_platen);
         struct poly_feature f = {.i = (int32_t)v, .j = 0, .kind = POLY_VERTEX_A};
         if (height < reach)
             BRC_TRY(poly_list_add(sim->ctx, &st->list, &f));

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The bonds of a specimen at its start: of grains over the facets that they share, and the holds of
+ * platens on the facets that lie on them. Called once, by sim.c; bonds come from nowhere else. */
+#include "polyhedra/poly.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void to_frame(double r[3], const double q[4], const double v[3])
+{
+    double m[3][3];
+    brc_quat_matrix(m, q);
+    brc_mat_mul_t(r, m, v);
+}
+
+/* Material points, normals and tangents of a row's bond in the frames of its bodies; n from a. */
+static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
+                     const double at[3], const double n[3])
+{
+    const struct brc_bodies *b = &sim->bodies;
+    struct poly_rows *rows = c->model_columns;
+    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
+    double arm[3], back[3], t[3], unused[3];
+    brc_frame(t, unused, n);
+    brc_scale(back, n, -1);
+    brc_sub(arm, at, b->x[ia]);
+    to_frame(rows->bond[row] + POLY_BOND_CA, b->q[ia], arm);
+    to_frame(rows->bond[row] + POLY_BOND_NA, b->q[ia], n);
+    to_frame(rows->bond[row] + POLY_BOND_TA, b->q[ia], t);
+    brc_sub(arm, at, b->x[ib]);
+    to_frame(rows->bond[row] + POLY_BOND_CB, b->q[ib], arm);
+    to_frame(rows->bond[row] + POLY_BOND_NB, b->q[ib], back);
+    to_frame(rows->bond[row] + POLY_BOND_TB, b->q[ib], t);
+}
+
+/* Bond of two grains over a facet. */
+static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    const struct poly_params *params = poly_params_of(sim);
+    struct brc_contacts *c = &sim->pairs;
+    struct poly_rows *rows = c->model_columns;
+    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
+    double d[3], ea = st->eroded[facet][0], eb = st->eroded[facet][1];
+    brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
+    c->facet[row] = (int32_t)facet;
+    st->n_removed += ea == 0 || eb == 0;
+    *poly_bond_area(rows, row) = f->area[facet];
+    if (params->area == POLY_AREA_ERODED)
+        *poly_bond_area(rows, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+    *poly_bond_length(rows, row) =
+        params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
+    fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
+    if (!params->bonds || *poly_bond_area(rows, row) == 0)
+        return;
+    c->status[row] = BRC_INTACT;
+    st->n_bonds++;
+    st->mean_area += *poly_bond_area(rows, row);
+    st->mean_length += *poly_bond_length(rows, row);
+}
+
+/* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
+ * distance of its centre (or the gap R) makes it. */
+static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
+                      const struct brc_platen *p, size_t facet)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    const struct poly_params *params = poly_params_of(sim);
+    struct brc_contacts *c = &sim->platens;
+    struct poly_rows *rows = c->model_columns;
+    const double *at = sim->bodies.x[p->body];
+    double height, unused, n[3], back[3];
+    brc_platen_height(p, at, sim->bodies.x[c->a[row]], &height, n);
+    brc_platen_height(p, at, f->centroid[facet], &unused, n);
+    brc_scale(back, n, -1);
+    c->facet[row] = (int32_t)facet;
+    *poly_bond_area(rows, row) =
+        params->area == POLY_AREA_FACET ? f->area[facet] : st->eroded[facet][0];
+    *poly_bond_length(rows, row) =
+        params->strain_length == POLY_LENGTH_GAP ? params->radius : height;
+    fix_bond(sim, c, row, f->centroid[facet], back);
+    if (p->bonding != BRC_BONDING_NONE && *poly_bond_area(rows, row) > 0)
+        c->status[row] = BRC_INTACT;
+}
+
+/* Contacts with platens are those of the facets that lie on them, and hold where the platen does.
+ */
+static int open_platens(struct brc_sim *sim, struct poly_state *st)
+{
+    struct brc_facing *facing;
+    size_t n_facing, n = 0;
+    BRC_TRY(brc_platens_facing(sim, &facing, &n_facing));
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, n_facing, sizeof *pair);
+    int code = pair != NULL ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < n_facing; i++) {
+        if (!facing[i].is_on)
+            continue;
+        pair[n][0] = facing[i].cell;
+        pair[n++][1] = facing[i].body;
+    }
+    if (code == 0)
+        code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
+    for (size_t i = 0; code == 0 && i < n_facing; i++) {
+        if (!facing[i].is_on)
+            continue;
+        int64_t row = brc_contacts_find(&sim->platens, facing[i].cell, facing[i].body);
+        open_hold(sim, st, (size_t)row, brc_sim_platen(sim, facing[i].body),
+                  (size_t)facing[i].facet);
+    }
+    free(pair);
+    free(facing);
+    return code;
+}
+
+int poly_open_bonds(struct brc_sim *sim, void *state)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    struct poly_state *st = state;
+    int32_t(*pair)[2] = brc_alloc(sim->ctx, f->n_facets, sizeof *pair);
+    size_t *facets = brc_alloc(sim->ctx, f->n_facets, sizeof *facets), n = 0;
+    int code = pair != NULL && facets != NULL ? 0 : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < f->n_facets; i++) {
+        if (f->cell[i][1] < 0 || !f->is_contact[i])
+            continue;
+        memcpy(pair[n], f->cell[i], sizeof *pair);
+        facets[n++] = i;
+    }
+    if (code == 0)
+        code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
+    for (size_t i = 0; code == 0 && i < n; i++)
+        open_bond(sim, st, i, facets[i]);
+    if (st->n_bonds > 0) {
+        st->mean_area /= (double)st->n_bonds;
+        st->mean_length /= (double)st->n_bonds;
+    }
+    if (code == 0)
+        code = open_platens(sim, st);
+    free(pair);
+    free(facets);
+    return code;
+}
