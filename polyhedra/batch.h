@@ -15,8 +15,8 @@
 #include <string.h>
 
 enum {
-    POLY_ROWS = 32,   /* contacts of a batch; row POLY_ROWS is what nobody reads */
-    POLY_TASKS = 1024 /* points at a time */
+    POLY_CONTACTS = 32, /* contacts of a batch; row POLY_CONTACTS is what nobody reads */
+    POLY_TASKS = 1024   /* points at a time */
 };
 
 /* Four contacts. */
@@ -121,7 +121,7 @@ enum {
     POLY_FRAME_XA,        /* centre of a; then viscosity along the normal */
     POLY_FRAME_X = 4,     /* from a to b; then viscosity across it */
     POLY_FRAME_SLIP = 8,  /* struct poly_frame4; then the limit of friction */
-    POLY_FRAME_TURN = 12, /* a row of slope, then a part of turn, three times */
+    POLY_FRAME_TURN = 12, /* a contact of slope, then a part of turn, three times */
     POLY_FRAME = 24
 };
 
@@ -144,23 +144,24 @@ struct poly_batch {
     struct poly_spring_law law;
     struct poly_lengths len;
     bool viscous, is_platens;
-    int32_t n_rows, n_points, n_apart;
-    int32_t n_ahead, ahead[POLY_ROWS];                  /* contacts of the next batch */
-    int32_t row[POLY_ROWS], a[POLY_ROWS], b[POLY_ROWS]; /* filled up to whole fours */
-    bool listed[POLY_ROWS];                             /* it has points */
-    bool is_stable[POLY_ROWS];          /* nothing of it needs a decision in this step */
-    bool has_apart[POLY_ROWS + 1];      /* some of its points are apart */
-    bool will_linearise[POLY_ROWS + 1]; /* its tangent is found */
-    struct poly_pair pair;              /* of the contact pair_row */
-    int32_t pair_row;
+    int32_t n_contacts, n_points, n_apart;
+    int32_t n_ahead, ahead[POLY_CONTACTS];                          /* contacts of the next batch */
+    int32_t row[POLY_CONTACTS], a[POLY_CONTACTS], b[POLY_CONTACTS]; /* filled up to whole fours */
+    bool listed[POLY_CONTACTS];                                     /* it has points */
+    bool is_stable[POLY_CONTACTS];          /* nothing of it needs a decision in this step */
+    bool has_apart[POLY_CONTACTS + 1];      /* some of its points are apart */
+    bool will_linearise[POLY_CONTACTS + 1]; /* its tangent is found */
+    struct poly_pair pair;                  /* of the contact pair_of_row */
+    int32_t pair_of_row;
     int32_t n_tasks[POLY_N_LISTS];
-    double nearest[POLY_ROWS + 1];    /* the smallest gap of a contact's points */
-    double valid_path[POLY_ROWS + 1]; /* for which its springs act, while its tangent is found */
-    _Alignas(64) double frame[POLY_ROWS + 1][POLY_FRAME];
-    double sum[POLY_ROWS + 1][POLY_SUMS];
-    double tangent[POLY_ROWS + 1][36]; /* column after column */
-    brc_lanes linearised_work;         /* J */
-    struct poly_contact4 four[POLY_ROWS / BRC_LANES];
+    double nearest[POLY_CONTACTS + 1]; /* the smallest gap of a contact's points */
+    double
+        valid_path[POLY_CONTACTS + 1]; /* for which its springs act, while its tangent is found */
+    _Alignas(64) double frame[POLY_CONTACTS + 1][POLY_FRAME];
+    double sum[POLY_CONTACTS + 1][POLY_SUMS];
+    double tangent[POLY_CONTACTS + 1][36]; /* column after column */
+    brc_lanes linearised_work;             /* J */
+    struct poly_contact4 four[POLY_CONTACTS / BRC_LANES];
     struct poly_geometry4 known[POLY_TASKS / BRC_LANES];
     struct poly_task task[POLY_N_LISTS][POLY_TASKS + BRC_LANES];
     struct poly_apart apart[POLY_TASKS];

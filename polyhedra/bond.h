@@ -50,6 +50,8 @@ BRC_LANES_INLINE brc_lanes poly_twist(const brc_lanes n[3], const brc_lanes ta[3
     brc_lanes y = brc_lanes_where(intact, brc_lanes_dot(c, n));
     x = brc_lanes_pick(intact, x, brc_lanes_all(1));
     /* the series of the arc tangent: what it leaves out is below t^10 / 11 */
+    /* Bonds break at some hundredths of a radian, so a call of atan2 for each of four lanes
+     * would be spent on nothing; it is left for bonds that do not break. */
     brc_lanes t = y / x, t2 = t * t;
     brc_lanes angle = t * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 * (1.0 / 7 - t2 * (1.0 / 9)))));
     brc_mask small = poly_positive(x) & brc_lanes_less(brc_lanes_abs(t), brc_lanes_all(0.03));

@@ -7,7 +7,7 @@ bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
                           const struct poly_state *st, const struct brc_contacts *c, size_t row)
 {
     int32_t n = (int32_t)row, a = c->a[row], b = c->b[row];
-    const struct numbers i = {{n, n, n, n}, {a, a, a, a}, {b, b, b, b}};
+    const struct poly_numbers4 i = {{n, n, n, n}, {a, a, a, a}, {b, b, b, b}};
     struct poly_bonds4 bonds;
     struct poly_bond_pose4 pose;
     struct poly_bond_state4 all;
@@ -16,7 +16,7 @@ bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
     poly_all3(x, sim->bodies.x[b]);
     poly_sub3(x, x, xa);
     bool is_platen = c == &sim->platens, torsion = poly_params_of(sim)->torsion && !is_platen;
-    brc_mask intact = bonds_of_group(&bonds, &pose, sim, st, c, &i, x, torsion, is_platen);
+    brc_mask intact = poly_bonds_of_four(&bonds, &pose, sim, st, c, &i, x, torsion, is_platen);
     poly_bond_law(&all, &bonds, &pose);
     *r = (struct poly_bond){
         .kn = bonds.kn[0], .kt = bonds.kt[0], .ktheta = bonds.ktheta[0], .energy = all.energy[0]};
@@ -27,6 +27,7 @@ bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
     return intact[0] != 0;
 }
 
+/* The largest part of the limit names the mode of an event; the paper has no modes. */
 int poly_bond_mode(const struct poly_bond *bond)
 {
     int mode = bond->term[1] > bond->term[0] ? 1 : 0;

@@ -13,24 +13,27 @@ static void to_frame(double r[3], const double q[4], const double v[3])
     brc_mat_mul_t(r, m, v);
 }
 
-/* Material points, normals and tangents of a row's bond in the frames of its bodies; n from a. */
+/* Material points, normals and tangents of a contact's bond in the frames of its bodies; n from a.
+ */
+/* Points and directions are kept in both bodies rather than a displacement that is added up:
+ * rigid motion of a pair gives no force then, whatever the angle, and nothing drifts. */
 static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
                      const double at[3], const double n[3])
 {
     const struct brc_bodies *b = &sim->bodies;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
     double arm[3], back[3], t[3], unused[3];
     brc_frame(t, unused, n);
     brc_scale(back, n, -1);
     brc_sub(arm, at, b->x[ia]);
-    to_frame(rows->bond[row] + POLY_BOND_CA, b->q[ia], arm);
-    to_frame(rows->bond[row] + POLY_BOND_NA, b->q[ia], n);
-    to_frame(rows->bond[row] + POLY_BOND_TA, b->q[ia], t);
+    to_frame(columns->bond[row] + POLY_BOND_CA, b->q[ia], arm);
+    to_frame(columns->bond[row] + POLY_BOND_NA, b->q[ia], n);
+    to_frame(columns->bond[row] + POLY_BOND_TA, b->q[ia], t);
     brc_sub(arm, at, b->x[ib]);
-    to_frame(rows->bond[row] + POLY_BOND_CB, b->q[ib], arm);
-    to_frame(rows->bond[row] + POLY_BOND_NB, b->q[ib], back);
-    to_frame(rows->bond[row] + POLY_BOND_TB, b->q[ib], t);
+    to_frame(columns->bond[row] + POLY_BOND_CB, b->q[ib], arm);
+    to_frame(columns->bond[row] + POLY_BOND_NB, b->q[ib], back);
+    to_frame(columns->bond[row] + POLY_BOND_TB, b->q[ib], t);
 }
 
 /* Bond of two grains over a facet. */
@@ -39,24 +42,26 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, si
     const struct brc_facets *f = &sim->specimen->facets;
     const struct poly_params *params = poly_params_of(sim);
     struct brc_contacts *c = &sim->pairs;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
     double d[3], ea = st->eroded[facet][0], eb = st->eroded[facet][1];
     brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
     c->facet[row] = (int32_t)facet;
+    /* Erosion may take away a small facet on one side or both. With the area of the facet it is
+     * bonded all the same: the rock was bonded there. */
     st->n_removed += ea == 0 || eb == 0;
-    *poly_bond_area(rows, row) = f->area[facet];
+    *poly_bond_area(columns, row) = f->area[facet];
     if (params->area == POLY_AREA_ERODED)
-        *poly_bond_area(rows, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
-    *poly_bond_length(rows, row) =
+        *poly_bond_area(columns, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+    *poly_bond_length(columns, row) =
         params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
     fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
-    if (!params->bonds || *poly_bond_area(rows, row) == 0)
+    if (!params->bonds || *poly_bond_area(columns, row) == 0)
         return;
     c->status[row] = BRC_INTACT;
     st->n_bonds++;
-    st->mean_area += *poly_bond_area(rows, row);
-    st->mean_length += *poly_bond_length(rows, row);
+    st->mean_area += *poly_bond_area(columns, row);
+    st->mean_length += *poly_bond_length(columns, row);
 }
 
 /* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
@@ -67,19 +72,19 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     const struct brc_facets *f = &sim->specimen->facets;
     const struct poly_params *params = poly_params_of(sim);
     struct brc_contacts *c = &sim->platens;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     const double *at = sim->bodies.x[p->body];
     double height, unused, n[3], back[3];
     brc_platen_height(p, at, sim->bodies.x[c->a[row]], &height, n);
     brc_platen_height(p, at, f->centroid[facet], &unused, n);
     brc_scale(back, n, -1);
     c->facet[row] = (int32_t)facet;
-    *poly_bond_area(rows, row) =
+    *poly_bond_area(columns, row) =
         params->area == POLY_AREA_FACET ? f->area[facet] : st->eroded[facet][0];
-    *poly_bond_length(rows, row) =
+    *poly_bond_length(columns, row) =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : height;
     fix_bond(sim, c, row, f->centroid[facet], back);
-    if (p->bonding != BRC_BONDING_NONE && *poly_bond_area(rows, row) > 0)
+    if (p->bonding != BRC_BONDING_NONE && *poly_bond_area(columns, row) > 0)
         c->status[row] = BRC_INTACT;
 }
 

@@ -1,4 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Walks over the features of a core. A walk from the feature that a vertex had before, rather
+ * than a search over all or GJK: between two looks a vertex hardly moves, so that it mostly ends
+ * where it began, and it says which feature is the closest, which the laws and the bounds of
+ * points.c want to know. Called by the making of lists and the literal evaluation, never by the
+ * loop over contacts that are stable. */
 #include "polyhedra/closest.h"
 
 void poly_on_face(struct poly_closest *r, const struct poly_core *c, int32_t f, double height)
@@ -29,6 +34,8 @@ static double to_edge(const struct poly_core *c, int32_t edge, const double p[3]
     return brc_norm(r);
 }
 
+/* Faces count only from above, and strictly inside their sides: what is on an edge is left to
+ * the edge, so that no two features claim the same point with different normals. */
 void poly_closest_search(struct poly_closest *r, const struct poly_core *c, const double p[3])
 {
     double best = HUGE_VAL;
@@ -117,6 +124,8 @@ static int32_t walk_face(struct poly_closest *r, const struct poly_core *c, int3
 void poly_closest_walk(struct poly_closest *r, const struct poly_core *c, const double p[3],
                        int32_t feature)
 {
+    /* The surface is convex, so a walk that ends is right. Round-off may make two neighbours
+     * send each other the point for ever; then all edges are tried. */
     for (int tries = 0; tries < 32; tries++) {
         int32_t next = 0, index = feature >> 2;
         r->feature = -1;

@@ -62,6 +62,8 @@ BRC_LANES_INLINE void poly_turn_spring(brc_lanes xi[3], const brc_lanes n_old[3]
                                        const brc_lanes n[3], brc_lanes t)
 {
     brc_lanes r[3], a[3], c = brc_lanes_dot(n_old, n), t2 = 1 + t * t, tilt = 1 + c;
+    /* One division for both turns. The twirl by its half tangent keeps lengths to round-off at
+     * any angle and needs no sine. */
     brc_lanes both = 1 / (t2 * tilt), per = both * tilt;
     brc_lanes_cross(r, n_old, n);
     brc_lanes along = brc_lanes_dot(r, xi) * (both * t2);
@@ -79,6 +81,8 @@ BRC_LANES_INLINE brc_mask poly_slide_spring(brc_lanes xi[3], const brc_lanes n[3
                                             const brc_lanes du[3], brc_lanes limit)
 {
     poly_add3(xi, xi, du); /* eq:gt12:9 */
+    /* Projected after the sum: the turn leaves xi in the plane to round-off only, and that would
+     * add up. */
     poly_axpy3(xi, -brc_lanes_dot(xi, n), n);
     brc_lanes xi2 = brc_lanes_dot(xi, xi);
     brc_mask slips = brc_lanes_less(limit * limit, xi2);
@@ -107,6 +111,8 @@ BRC_LANES_INLINE brc_mask poly_shear_force(struct poly_springs4 *p, struct poly_
     brc_mask touches = poly_positive(t->weight);
     poly_set3(xi, p->xi[0], p->xi[1], p->xi[2]);
     poly_turn_spring(xi, p->n, t->n, slip->twirl);
+    /* What did not touch in the last step begins without a displacement, whatever its memory has
+     * from before. */
     poly_mask3(xi, poly_positive(old), xi);
     poly_set3(before, xi[0], xi[1], xi[2]);
     brc_mask slips = poly_slide_spring(xi, t->n, du, slip->limit * t->delta);

@@ -16,6 +16,8 @@ static int compare_pairs(const void *x, const void *y)
 
 /* --- contacts --------------------------------------------------------------------------------- */
 
+/* A contact that is bonded or touches has a state, which must not be lost though the neighbour
+ * list lacks it: its lists have been made for a range of their own. */
 static bool is_kept(const struct brc_contacts *c, size_t row)
 {
     const struct poly_points *points = c->point_columns;
@@ -28,8 +30,8 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
 }
 
 /* The neighbours, and the contacts that are bonded or touch. */
-static int merge_rows(struct brc_context *ctx, struct brc_contacts *c,
-                      const struct brc_neighbours *near)
+static int merge_contacts(struct brc_context *ctx, struct brc_contacts *c,
+                          const struct brc_neighbours *near)
 {
     int32_t(*pair)[2] = brc_alloc(ctx, near->n + c->n, sizeof *pair);
     if (pair == NULL)
@@ -51,17 +53,18 @@ static int merge_rows(struct brc_context *ctx, struct brc_contacts *c,
     return code;
 }
 
-int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
-                     const struct brc_neighbours *platens)
+int poly_update_contacts(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                         const struct brc_neighbours *platens)
 {
     (void)state;
-    BRC_TRY(merge_rows(sim->ctx, &sim->pairs, grains));
-    return merge_rows(sim->ctx, &sim->platens, platens);
+    BRC_TRY(merge_contacts(sim->ctx, &sim->pairs, grains));
+    return merge_contacts(sim->ctx, &sim->platens, platens);
 }
 
 /* --- feature lists ---------------------------------------------------------------------------- */
 
-/* The same vertex keeps its point wherever its foot is; other points are told by both features. */
+/* The same vertex keeps its point wherever its closest point is; other points are told by both
+ * features. */
 static bool is_same(const struct poly_points *points, size_t p, const struct poly_feature *f,
                     bool merged)
 {
@@ -132,34 +135,35 @@ static bool comes_before(const struct poly_feature *f, const struct poly_points 
 void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
 {
     const struct poly_points *points = c->point_columns;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
-    size_t next = first + (size_t)rows->awake[row];
-    for (; next < end && rows->skin_left[row] <= points->sleep[next]; next++) {
+    size_t next = first + (size_t)columns->awake[row];
+    for (; next < end && columns->skin_left[row] <= points->sleep[next]; next++) {
         struct poly_feature f = poly_point(points, next);
         double hold = points->feature_valid_to[next];
         size_t p = next;
         for (; p > first && comes_before(&f, points, p - 1, merged); p--)
             copy_point(points, p, p - 1);
-        set_point(points, p, &f, rows->skin_left[row], hold);
-        rows->ready[row] = 0;
+        set_point(points, p, &f, columns->skin_left[row], hold);
+        columns->ready[row] = 0;
     }
-    rows->awake[row] = (int32_t)(next - first);
+    columns->awake[row] = (int32_t)(next - first);
 }
 
+/* Those that sleep stand sorted, so that to see whether one wakes up is to look at the first. */
 void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep)
 {
     const struct poly_points *points = c->point_columns;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     struct poly_feature f = poly_point(points, p);
     double hold = points->feature_valid_to[p];
     size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
-    size_t awake = (size_t)c->p0[row] + (size_t)rows->awake[row]--;
+    size_t awake = (size_t)c->p0[row] + (size_t)columns->awake[row]--;
     /* the others that are awake close up; those that sleep are sorted by when they wake up */
     for (; p + 1 < end && (p + 1 < awake || points->sleep[p + 1] > sleep); p++)
         copy_point(points, p, p + 1);
     set_point(points, p, &f, sleep, hold);
-    rows->ready[row] = 0;
+    columns->ready[row] = 0;
 }
 
 /* Pairs that may touch at once first, then by the path that they are free for. */
@@ -174,15 +178,17 @@ static int compare_features(const void *x, const void *y)
     return f->i != g->i ? (f->i > g->i) - (f->i < g->i) : (f->j > g->j) - (f->j < g->j);
 }
 
-/* The row's points become the listed features; those that act keep their state. A point that acts
- * is always listed again, because it is within reach. */
+/* The contact's points become the listed features; those that act keep their state. A point that
+ * acts is always listed again, because it is within reach. */
 static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t row,
                           const struct poly_list *list, bool merged)
 {
-    struct poly_rows *rows = c->model_columns;
-    double room = rows->skin_left[row];
+    struct poly_contacts *columns = c->model_columns;
+    double skin_left = columns->skin_left[row];
     if (list->n > 1)
         qsort(list->feature, list->n, sizeof *list->feature, compare_features);
+    /* Only what acts has a state worth keeping. The rest is known from the list that has just
+     * been made, and better than before. */
     size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
     size_t n = kept + list->n;
     c->np[row] = (int32_t)kept;
@@ -197,27 +203,28 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
             memcpy(points->near[p], list->feature[k].near, sizeof points->near[p]);
             points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
         } else if (next < first + n)
-            set_point(points, next++, &list->feature[k], room - list->feature[k].free, HUGE_VAL);
+            set_point(points, next++, &list->feature[k], skin_left - list->feature[k].free,
+                      HUGE_VAL);
     }
     c->np[row] = (int32_t)(next - first);
-    rows->awake[row] = (int32_t)kept;
-    rows->ready[row] = 0;
+    columns->awake[row] = (int32_t)kept;
+    columns->ready[row] = 0;
     return 0;
 }
 
-int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
+int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t row)
 {
     struct brc_contacts *c = &sim->pairs;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     const struct poly_params *params = poly_params_of(sim);
     struct poly_pair pair;
     double allowance;
     poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
     BRC_TRY(st->kernels.list(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
                              POLY_LIST_SKIN * params->radius, &allowance));
-    rows->rebuild_at[row] =
+    columns->rebuild_at[row] =
         sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] + allowance;
-    rows->skin_left[row] = allowance;
+    columns->skin_left[row] = allowance;
     return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);
 }
 
@@ -226,7 +233,7 @@ int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row)
 int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row)
 {
     struct brc_contacts *c = &sim->platens;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     size_t a = (size_t)c->a[row], first = st->shapes.vertex_first[a];
     size_t n = st->shapes.vertex_first[a + 1] - first;
     double radius = poly_params_of(sim)->radius, reach = (1 + POLY_PLATEN_SKIN) * radius;
@@ -243,7 +250,7 @@ int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row)
         else
             allowance = fmin(allowance, height - radius);
     }
-    rows->rebuild_at[row] =
+    columns->rebuild_at[row] =
         sim->bodies.path_length[a] + sim->bodies.path_length[c->b[row]] + allowance;
     return replace_points(sim->ctx, c, row, &st->list, false);
 }

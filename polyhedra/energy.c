@@ -19,6 +19,8 @@ static void add_active(void *user, const struct poly_active *active)
     add_point(user, active->geometry.weight, active->geometry.delta, active->point);
 }
 
+/* Also those of linearised contacts are taken from the pose: the ledger shows by this what
+ * linearising leaves out. */
 static double bond_energy(const struct brc_sim *sim, const struct poly_state *st,
                           const struct brc_contacts *c)
 {

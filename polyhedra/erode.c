@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 
+/* Work space for one grain after the other. */
 struct eroder {
     struct brc_erosion erosion;
     double (*vertex)[3], (*normal)[3]; /* of the core in the body frame */

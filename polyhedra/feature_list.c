@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory of feature lists: one list is made over and over again for all contacts, so it grows
+ * and never shrinks. */
 #include "polyhedra/feature_list.h"
 
 #include <stdlib.h>

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One feature pair at a time. It walks over the features of a core, so the loop comes here only
+ * for a vertex whose closest feature is not sure, and for the vertices of `closed`. It computes
+ * nothing that the laws do not: it finds the feature, and hands the distance on. */
 #include "polyhedra/features.h"
 
 #include "polyhedra/listing_kernels.inc.h"
@@ -6,7 +9,7 @@
 int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
                        enum poly_rule rule, double skin, double *allowance)
 {
-    return list_features(ctx, l, p, rule, skin, allowance);
+    return poly_list_all(ctx, l, p, rule, skin, allowance);
 }
 
 /* --- vertices --------------------------------------------------------------------------------- */
@@ -70,6 +73,9 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
     }
     struct poly_geometry4 all;
     brc_lanes place[3], normal[3], sign = brc_lanes_all(of_b ? 1 : -1);
+    /* The distance is that of the walk, in the body frame. The loop has it from the planes and
+     * vertices in space; both are right to round-off, and a contact goes over to the loop as
+     * soon as its feature is sure. */
     poly_to_space(out, rm, at.n);
     poly_all3(place, v);
     poly_all3(normal, out);

@@ -7,7 +7,7 @@
 /* Room above the moments of stiffness, so that turning arms do not count as changes. */
 #define POLY_K_ROOM 1.02
 
-/* Stiffness of a row: k_version changes when it grows, or has fallen for good. */
+/* Stiffness of a contact: k_version changes when it grows, or has fallen for good. */
 static void store_stiffness(struct brc_contacts *c, size_t row, const double k[3])
 {
     double *old = c->k[row];
@@ -20,16 +20,16 @@ static void store_stiffness(struct brc_contacts *c, size_t row, const double k[3
     c->k_version++;
 }
 
-/* True when the travel of a row's bodies calls for a new list. */
+/* True when the travel of a contact's bodies calls for a new list. */
 static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t row)
 {
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     return sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] >=
-           rows->rebuild_at[row];
+           columns->rebuild_at[row];
 }
 
-/* A row without bond and listed features, which had no spring in the last step either: its forces
- * and works are zero already. */
+/* A contact without bond and listed features, which had no spring in the last step either: its
+ * forces and works are zero already. */
 static bool is_idle(const struct brc_contacts *c, size_t row)
 {
     return c->np[row] == 0 && c->status[row] != BRC_INTACT && c->k[row][0] == 0;
@@ -42,20 +42,22 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
     struct brc_sim *sim = batch->sim;
     struct brc_contacts *c = batch->contacts;
     struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     size_t row = (size_t)batch->row[i];
     int lane = i % BRC_LANES;
     struct poly_bond bond;
     poly_bond_of_contact(&bond, sim, batch->st, c, row);
-    double last = -0.5 * sim->dt * power(&g->bond, g, g->x)[lane];
+    double last = -0.5 * sim->dt * poly_power(&g->bond, g, g->x)[lane];
     struct brc_event event = {.a = c->a[row],
                               .b = c->b[row],
                               .facet = c->facet[row],
                               .mode = (enum brc_mode)poly_bond_mode(&bond),
-                              .area = *poly_bond_area(rows, row),
+                              .area = *poly_bond_area(columns, row),
                               .energy = bond.energy - last};
     brc_copy(event.x, bond.x);
     brc_copy(event.n, bond.n);
+    /* The energy is the stored one of the pose that broke it, not of the limit: the step over
+     * the limit is dissipated with it, and the ledger closes. */
     c->status[row] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);
     if (poly_is_linearised(sim))
@@ -68,14 +70,14 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
         g->bond.f[k][lane] = g->bond.m[k][lane] = g->k[k][lane] = 0;
 }
 
-/* Contacts that have something to do, for the next batch; returns the row after them. */
+/* Contacts that have something to do, for the next batch; returns the contact after them. */
 static size_t look_ahead(struct poly_batch *batch, size_t row)
 {
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     int32_t n = 0;
-    for (; row < c->n && n < POLY_ROWS; row++)
-        if ((batch->is_platens || !rows->is_linearised[row]) &&
+    for (; row < c->n && n < POLY_CONTACTS; row++)
+        if ((batch->is_platens || !columns->is_linearised[row]) &&
             (c->np[row] > 0 || !is_idle(c, row) || is_awake(batch->sim, c, row)))
             batch->ahead[n++] = (int32_t)row;
     batch->n_ahead = n;
@@ -90,24 +92,24 @@ BRC_LANES_INLINE void fetch(const void *at, size_t size)
     __builtin_prefetch((const char *)at + size - 1);
 }
 
-/* What the step reads of the rows of the next batch, while this one is worked on: the step waits
- * for memory more than for anything else. */
-BRC_LANES_INLINE void fetch_rows(const struct poly_batch *batch, bool linearised)
+/* What the step reads of the contacts of the next batch, while this one is worked on: the step
+ * waits for memory more than for anything else. */
+BRC_LANES_INLINE void fetch_contacts(const struct poly_batch *batch, bool linearised)
 {
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     for (int32_t i = 0; i < batch->n_ahead; i++) {
         int32_t row = batch->ahead[i];
         fetch(c->f[row], sizeof c->f[row]);
         fetch(c->ta[row], sizeof c->ta[row]);
         fetch(c->tb[row], sizeof c->tb[row]);
         fetch(c->k[row], sizeof c->k[row]);
-        fetch(rows->bond[row], sizeof rows->bond[row]);
+        fetch(columns->bond[row], sizeof columns->bond[row]);
         if (linearised) {
-            fetch(rows->motion[row], sizeof rows->motion[row]);
+            fetch(columns->motion[row], sizeof columns->motion[row]);
         } else {
-            fetch(rows->normal_old[row], sizeof rows->normal_old[row]);
-            fetch(rows->bond_old[row], sizeof rows->bond_old[row]);
+            fetch(columns->normal_old[row], sizeof columns->normal_old[row]);
+            fetch(columns->bond_old[row], sizeof columns->bond_old[row]);
         }
     }
 }
@@ -115,11 +117,11 @@ BRC_LANES_INLINE void fetch_rows(const struct poly_batch *batch, bool linearised
 BRC_LANES_INLINE void fetch_points(const struct poly_batch *batch)
 {
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     const struct poly_points *points = c->point_columns;
     for (int32_t i = 0; i < batch->n_ahead; i++) {
         int32_t row = batch->ahead[i];
-        size_t p = (size_t)c->p0[row], n = (size_t)rows->awake[row];
+        size_t p = (size_t)c->p0[row], n = (size_t)columns->awake[row];
         if (n == 0)
             continue;
         fetch(points->item[p], n * sizeof points->item[p]);
@@ -127,8 +129,8 @@ BRC_LANES_INLINE void fetch_points(const struct poly_batch *batch)
     }
 }
 
-/* The rows ahead become those of the batch. */
-static void take_rows(struct poly_batch *batch)
+/* The contacts ahead become those of the batch. */
+static void take_contacts(struct poly_batch *batch)
 {
     const struct brc_contacts *c = batch->contacts;
     int32_t n = batch->n_ahead;
@@ -139,7 +141,7 @@ static void take_rows(struct poly_batch *batch)
         batch->b[i] = c->b[row];
         batch->listed[i] = c->np[row] > 0;
     }
-    batch->n_rows = n;
+    batch->n_contacts = n;
     for (; n % BRC_LANES != 0; n++) {
         batch->row[n] = batch->row[n - 1];
         batch->a[n] = batch->a[n - 1];
@@ -153,7 +155,7 @@ static int prepare(struct poly_batch *batch, int32_t i)
 {
     struct brc_sim *sim = batch->sim;
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     struct poly_contact4 *g = &batch->four[i / BRC_LANES];
     size_t row = (size_t)batch->row[i];
     int lane = i % BRC_LANES;
@@ -162,21 +164,21 @@ static int prepare(struct poly_batch *batch, int32_t i)
             BRC_TRY(poly_list_platen(sim, batch->st, row));
             BRC_TRY(poly_foresee(sim, batch->st, row, true));
         }
-    } else if (batch->listed[i] ? rows->skin_left[row] <= 0 : is_awake(sim, c, row)) {
-        BRC_TRY(poly_list_row(sim, batch->st, row));
+    } else if (batch->listed[i] ? columns->skin_left[row] <= 0 : is_awake(sim, c, row)) {
+        BRC_TRY(poly_list_contact(sim, batch->st, row));
         if (c->status[row] != BRC_INTACT)
             BRC_TRY(poly_foresee(sim, batch->st, row, false));
     }
     batch->listed[i] = c->np[row] > 0; /* by the list just made */
-    g->gap[lane] = rows->rebuild_at[row] - sim->bodies.path_length[batch->a[i]] -
+    g->gap[lane] = columns->rebuild_at[row] - sim->bodies.path_length[batch->a[i]] -
                    sim->bodies.path_length[batch->b[i]];
     if (!batch->is_platens && g->broken[lane] > 1 && poly_params_of(sim)->breakable)
         break_bond(batch, i);
     return 0;
 }
 
-/* Stiffness of row i of the batch; works into the ledger. */
-static void store_row(struct poly_batch *batch, int32_t i)
+/* Stiffness of contact i of the batch; works into the ledger. */
+static void store_contact(struct poly_batch *batch, int32_t i)
 {
     struct brc_sim *sim = batch->sim;
     struct brc_contacts *c = batch->contacts;
@@ -208,7 +210,7 @@ static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct pol
     batch->loop = is_platens ? &st->kernels.platens : &st->kernels.pairs;
     batch->law = (struct poly_spring_law){kn, kt, poly_most(kn, kt), p->mu * kn / kt};
     batch->len = (struct poly_lengths){radius + radius, radius, POLY_LIST_SKIN * radius};
-    batch->pair_row = -1;
+    batch->pair_of_row = -1;
     batch->n_points = 0;
     batch->viscous = poly_is_viscous(sim);
     memset(batch->is_stable, 0, sizeof batch->is_stable);
@@ -217,19 +219,23 @@ static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct pol
 
 static void work_through(struct poly_batch *batch, bool linearised)
 {
+    /* The contacts of a batch are chosen before the last one is worked off, for their memory to
+     * be fetched meanwhile. */
     size_t row = look_ahead(batch, 0);
     while (batch->n_ahead > 0) {
-        take_rows(batch);
+        take_contacts(batch);
         row = look_ahead(batch, row);
-        fetch_rows(batch, linearised);
+        fetch_contacts(batch, linearised);
         batch->loop->motion(batch);
-        for (int32_t i = 0; i < batch->n_rows; i++) {
+        for (int32_t i = 0; i < batch->n_contacts; i++) {
             batch->nearest[i] = batch->valid_path[i] = HUGE_VAL;
             batch->has_apart[i] = false;
             if (!batch->is_stable[i] && prepare(batch, i) != 0)
                 return;
         }
-        for (int32_t i = 0; i < batch->n_rows; i++) {
+        /* Only when all contacts have their lists: to make one may move the points of the table
+         * in memory. */
+        for (int32_t i = 0; i < batch->n_contacts; i++) {
             poly_list_points(batch, i);
             if (linearised)
                 poly_begin_tangent(batch, i);
@@ -237,8 +243,8 @@ static void work_through(struct poly_batch *batch, bool linearised)
         fetch_points(batch);
         poly_work_off(batch);
         batch->loop->finish(batch);
-        for (int32_t i = 0; i < batch->n_rows; i++) {
-            store_row(batch, i);
+        for (int32_t i = 0; i < batch->n_contacts; i++) {
+            store_contact(batch, i);
             if (linearised)
                 poly_linearise(batch, i);
         }

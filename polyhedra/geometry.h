@@ -74,6 +74,8 @@ BRC_LANES_INLINE void poly_full_weight(struct poly_geometry4 *t)
         t->g[k] = t->c[k] = brc_lanes_all(0);
 }
 
+/* By masks, not by branches: of four contacts one mostly touches, and zeros may be added to a
+ * sum. */
 BRC_LANES_INLINE void poly_hide_apart(struct poly_geometry4 *t, brc_mask touches)
 {
     t->weight = brc_lanes_where(touches, t->weight);
@@ -171,6 +173,8 @@ BRC_LANES_INLINE brc_mask poly_cross_edges(struct poly_crossings *x, brc_lanes p
     brc_lanes c = brc_lanes_dot(x->a, x->b), ra = brc_lanes_dot(x->r, x->a),
               rb = brc_lanes_dot(x->r, x->b);
     brc_lanes ta = ra * lb2 - c * rb, tb = c * ra - rb * la2;
+    /* Compared as products, without a division: lengths of zero and parallel edges make no
+     * exception, and results scale with the sample. */
     x->skew = brc_lanes_less(POLY_PARALLEL * la2 * lb2, m2);
     brc_mask inside = x->skew & poly_positive(ta) & brc_lanes_less(ta, m2) & poly_positive(tb) &
                       brc_lanes_less(tb, m2);
@@ -178,6 +182,7 @@ BRC_LANES_INLINE brc_mask poly_cross_edges(struct poly_crossings *x, brc_lanes p
     x->r2 = brc_lanes_dot(x->r, x->r);
     x->la = brc_lanes_sqrt(la2);
     x->lb = brc_lanes_sqrt(lb2);
+    /* One division for both lengths: a division takes as long as four products of lanes. */
     brc_lanes per = 1 / (x->la * x->lb), per_a = per * x->lb, per_b = per * x->la, per_m = 1 / m2;
     x->per_m = per_m;
     poly_scale3(x->a, x->a, per_a);
@@ -364,6 +369,7 @@ BRC_LANES_INLINE brc_mask poly_edge_geometry(struct poly_geometry4 *t,
     struct poly_crossings x;
     brc_mask inside = poly_cross_edges(&x, p);
     brc_mask touches = poly_crossing_geometry(t, len, &x, inside, p[0], side, reach, rule);
+    /* Both for all lanes, as edges that cross inside and edges that do not may share a four. */
     if (rule == POLY_CLOSED) {
         struct poly_geometry4 closed;
         brc_mask touches_closed = poly_closed_geometry(&closed, len, &x, p[0]);

@@ -10,11 +10,12 @@
 
 #include <string.h>
 
-/* --- sums of rows ----------------------------------------------------------------------------- */
+/* --- sums of contacts
+ * ----------------------------------------------------------------------------- */
 
-/* The points' sums of a group's rows. */
-BRC_LANES_INLINE void sums_of_four(brc_lanes r[POLY_SUMS], const struct poly_batch *batch,
-                                   int32_t four, int n)
+/* The points' sums of a group's contacts. */
+BRC_LANES_INLINE void poly_sums_of_four(brc_lanes r[POLY_SUMS], const struct poly_batch *batch,
+                                        int32_t four, int n)
 {
     for (int i = 0; i < n; i += BRC_LANES) {
         for (int row = 0; row < BRC_LANES; row++)
@@ -25,9 +26,9 @@ BRC_LANES_INLINE void sums_of_four(brc_lanes r[POLY_SUMS], const struct poly_bat
 
 /* Work taken up by the source of a wrench over the step, by the trapezoid rule of ledger.h; the
  * wrench becomes the old one. */
-BRC_LANES_INLINE brc_lanes work(double (*old)[6], const struct poly_wrench4 *now,
-                                const struct poly_contact4 *g, const int32_t row[BRC_LANES],
-                                double dt)
+BRC_LANES_INLINE brc_lanes poly_work(double (*old)[6], const struct poly_wrench4 *now,
+                                     const struct poly_contact4 *g, const int32_t row[BRC_LANES],
+                                     double dt)
 {
     struct poly_wrench4 w;
     brc_lanes x_old[3], all[6];
@@ -39,31 +40,31 @@ BRC_LANES_INLINE brc_lanes work(double (*old)[6], const struct poly_wrench4 *now
     poly_set3(all, now->f[0], now->f[1], now->f[2]);
     poly_set3(all + 3, now->m[0], now->m[1], now->m[2]);
     brc_lanes_scatter6(old, row, all);
-    return -0.5 * dt * (power(&w, g, x_old) + power(now, g, g->x));
+    return -0.5 * dt * (poly_power(&w, g, x_old) + poly_power(now, g, g->x));
 }
 
-BRC_LANES_INLINE void works_of_four(struct poly_batch *batch, struct poly_contact4 *g,
-                                    const int32_t *row, const struct poly_wrench4 *normal,
-                                    const struct poly_wrench4 *sticky, const bool viscous)
+BRC_LANES_INLINE void poly_works_of_four(struct poly_batch *batch, struct poly_contact4 *g,
+                                         const int32_t *row, const struct poly_wrench4 *normal,
+                                         const struct poly_wrench4 *sticky, const bool viscous)
 {
-    const struct poly_rows *rows = batch->contacts->model_columns;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
     double dt = batch->sim->dt;
-    g->work_normal = work(rows->normal_old, normal, g, row, dt);
-    g->work_bond = work(rows->bond_old, &g->bond, g, row, dt);
+    g->work_normal = poly_work(columns->normal_old, normal, g, row, dt);
+    g->work_bond = poly_work(columns->bond_old, &g->bond, g, row, dt);
     if (viscous)
-        g->work_viscous = work(rows->viscous_old, sticky, g, row, dt);
+        g->work_viscous = poly_work(columns->viscous_old, sticky, g, row, dt);
 }
 
-/* Forces and moments of the rows of a group, and what else they need. */
-BRC_LANES_INLINE void finish_four(struct poly_batch *batch, int32_t four, const bool ledger,
-                                  const bool viscous, const bool linearised)
+/* Forces and moments of the contacts of a group, and what else they need. */
+BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, const bool ledger,
+                                       const bool viscous, const bool linearised)
 {
     const struct brc_contacts *c = batch->contacts;
     struct poly_contact4 *g = &batch->four[four];
     const int32_t *row = batch->row + BRC_LANES * four;
     brc_lanes s[POLY_SUMS];
     struct poly_wrench4 normal, sticky, all;
-    sums_of_four(s, batch, four, viscous ? POLY_SUMS : POLY_SUM_SLID + 4);
+    poly_sums_of_four(s, batch, four, viscous ? POLY_SUMS : POLY_SUM_SLID + 4);
     poly_set3(normal.f, s[0], s[1], s[2]);
     poly_set3(normal.m, s[3], s[4], s[5]);
     poly_set3(sticky.f, s[POLY_SUM_VISCOUS], s[POLY_SUM_VISCOUS + 1], s[POLY_SUM_VISCOUS + 2]);
@@ -81,51 +82,53 @@ BRC_LANES_INLINE void finish_four(struct poly_batch *batch, int32_t four, const 
     g->stored = s[POLY_SUM_STORED];
     g->slid = s[POLY_SUM_SLID];
     if (ledger && linearised) {
-        g->work_normal = work_of_rows(c, &all, g, row, batch->sim->dt) - g->slid;
+        g->work_normal = poly_work_of_four(c, &all, g, row, batch->sim->dt) - g->slid;
         g->work_bond = brc_lanes_all(0);
     } else if (ledger) {
-        works_of_four(batch, g, row, &normal, &sticky, viscous);
+        poly_works_of_four(batch, g, row, &normal, &sticky, viscous);
     }
-    put_wrenches(c, &all, g, row);
+    poly_put_wrenches(c, &all, g, row);
 }
 
-BRC_LANES_INLINE void finish_kernel(struct poly_batch *batch, const bool ledger, const bool viscous,
-                                    const bool linearised)
+BRC_LANES_INLINE void poly_finish_kernel(struct poly_batch *batch, const bool ledger,
+                                         const bool viscous, const bool linearised)
 {
-    for (int32_t four = 0; BRC_LANES * four < batch->n_rows; four++)
-        finish_four(batch, four, ledger, viscous, linearised);
+    for (int32_t four = 0; BRC_LANES * four < batch->n_contacts; four++)
+        poly_finish_four(batch, four, ledger, viscous, linearised);
 }
 
 /* --- choice ----------------------------------------------------------------------------------- */
 
+/* One function for each set of options. With options as variables the loop over points takes
+ * branches for each four, and the compiler keeps what no option needs. */
 #define KERNEL(name, call)                                              \
     __attribute__((flatten)) static void name(struct poly_batch *batch) \
     {                                                                   \
         call;                                                           \
     }
-KERNEL(motion, motion_kernel(batch, false, false, false))
-KERNEL(motion_torsion, motion_kernel(batch, true, false, false))
-KERNEL(motion_linearised, motion_kernel(batch, false, true, false))
-KERNEL(motion_torsion_linearised, motion_kernel(batch, true, true, false))
-KERNEL(motion_platens, motion_kernel(batch, false, false, true))
-KERNEL(finish, finish_kernel(batch, false, false, false))
-KERNEL(finish_viscous, finish_kernel(batch, false, true, false))
-KERNEL(finish_ledger, finish_kernel(batch, true, false, false))
-KERNEL(finish_viscous_ledger, finish_kernel(batch, true, true, false))
-KERNEL(finish_linearised, finish_kernel(batch, false, false, true))
-KERNEL(finish_linearised_ledger, finish_kernel(batch, true, false, true))
-KERNEL(linearised, linearised_kernel(batch, false))
-KERNEL(linearised_ledger, linearised_kernel(batch, true))
-KERNEL(platens, platens_kernel(batch, false, false))
-KERNEL(platens_ledger, platens_kernel(batch, false, true))
-KERNEL(platens_viscous, platens_kernel(batch, true, false))
-KERNEL(platens_viscous_ledger, platens_kernel(batch, true, true))
-#define POINTS(name, ...)                                                 \
-    KERNEL(closed_##name, points_kernel(batch, POLY_CLOSED, __VA_ARGS__)) \
+KERNEL(motion, poly_motion_kernel(batch, false, false, false))
+KERNEL(motion_torsion, poly_motion_kernel(batch, true, false, false))
+KERNEL(motion_linearised, poly_motion_kernel(batch, false, true, false))
+KERNEL(motion_torsion_linearised, poly_motion_kernel(batch, true, true, false))
+KERNEL(motion_platens, poly_motion_kernel(batch, false, false, true))
+KERNEL(finish, poly_finish_kernel(batch, false, false, false))
+KERNEL(finish_viscous, poly_finish_kernel(batch, false, true, false))
+KERNEL(finish_ledger, poly_finish_kernel(batch, true, false, false))
+KERNEL(finish_viscous_ledger, poly_finish_kernel(batch, true, true, false))
+KERNEL(finish_linearised, poly_finish_kernel(batch, false, false, true))
+KERNEL(finish_linearised_ledger, poly_finish_kernel(batch, true, false, true))
+KERNEL(linearised, poly_linearised_kernel(batch, false))
+KERNEL(linearised_ledger, poly_linearised_kernel(batch, true))
+KERNEL(platens, poly_platens_kernel(batch, false, false))
+KERNEL(platens_ledger, poly_platens_kernel(batch, false, true))
+KERNEL(platens_viscous, poly_platens_kernel(batch, true, false))
+KERNEL(platens_viscous_ledger, poly_platens_kernel(batch, true, true))
+#define POINTS(name, ...)                                                      \
+    KERNEL(closed_##name, poly_points_kernel(batch, POLY_CLOSED, __VA_ARGS__)) \
     LINEAR_POINTS(name, __VA_ARGS__)
-#define LINEAR_POINTS(name, ...)                                          \
-    KERNEL(strict_##name, points_kernel(batch, POLY_STRICT, __VA_ARGS__)) \
-    KERNEL(merged_##name, points_kernel(batch, POLY_MERGED, __VA_ARGS__))
+#define LINEAR_POINTS(name, ...)                                               \
+    KERNEL(strict_##name, poly_points_kernel(batch, POLY_STRICT, __VA_ARGS__)) \
+    KERNEL(merged_##name, poly_points_kernel(batch, POLY_MERGED, __VA_ARGS__))
 POINTS(plain, false, false, false, false)
 POINTS(viscous, false, false, true, false)
 POINTS(friction, false, true, false, false)
@@ -141,17 +144,18 @@ LINEAR_POINTS(linearised_friction_ledger, true, true, false, true)
 
 __attribute__((flatten)) static void pose(const struct brc_sim *sim, const struct poly_state *st)
 {
-    place_cores(sim, st);
+    poly_pose_cores(sim, st);
 }
 
 __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_list *l,
                                          const struct poly_pair *p, enum poly_rule rule,
                                          double skin, double *allowance)
 {
-    return list_features(ctx, l, p, rule, skin, allowance);
+    return poly_list_all(ctx, l, p, rule, skin, allowance);
 }
 
-static struct poly_loop linearised_loop(const struct poly_params *p, bool friction, bool ledger)
+static struct poly_loop poly_linearised_loop(const struct poly_params *p, bool friction,
+                                             bool ledger)
 {
     static poly_kernel *const points[2][2][2] = {
         {{strict_linearised, strict_linearised},
@@ -164,8 +168,8 @@ static struct poly_loop linearised_loop(const struct poly_params *p, bool fricti
                               .finish = ledger ? finish_linearised_ledger : finish_linearised};
 }
 
-static struct poly_loop literal_loop(const struct poly_params *p, bool friction, bool viscous,
-                                     bool ledger)
+static struct poly_loop poly_literal_loop(const struct poly_params *p, bool friction, bool viscous,
+                                          bool ledger)
 {
 #define BY_OPTIONS(rule)                                                  \
     {                                                                     \
@@ -183,18 +187,18 @@ static struct poly_loop literal_loop(const struct poly_params *p, bool friction,
                               .finish = finishes[viscous][ledger]};
 }
 
-static struct poly_kernels choose_kernels(const struct brc_sim *sim)
+static struct poly_kernels poly_choose_kernels(const struct brc_sim *sim)
 {
     static poly_kernel *const at_platens[2][2] = {{platens, platens_ledger},
                                                   {platens_viscous, platens_viscous_ledger}};
     const struct poly_params *p = poly_params_of(sim);
     bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
     bool viscous = BRC_OPTION(poly_is_viscous(sim)), linear = poly_is_linearised(sim);
-    struct poly_loop literal = literal_loop(p, friction, viscous, ledger);
+    struct poly_loop literal = poly_literal_loop(p, friction, viscous, ledger);
     return (struct poly_kernels){
         .pose = pose,
         .list = list,
-        .pairs = linear ? linearised_loop(p, friction, ledger) : literal,
+        .pairs = linear ? poly_linearised_loop(p, friction, ledger) : literal,
         .platens = {motion_platens, at_platens[viscous][ledger], literal.finish},
         .linearised = !linear  ? NULL
                       : ledger ? linearised_ledger

@@ -5,5 +5,5 @@
 
 struct poly_kernels poly_kernels_avx512(const struct brc_sim *sim)
 {
-    return choose_kernels(sim);
+    return poly_choose_kernels(sim);
 }

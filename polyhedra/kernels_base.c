@@ -4,5 +4,5 @@
 
 struct poly_kernels poly_kernels_base(const struct brc_sim *sim)
 {
-    return choose_kernels(sim);
+    return poly_choose_kernels(sim);
 }

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which rows are condensed, for how long, and by which tangent; condensed.h carries them along. */
+/* Which contacts are linearised, for how long, and by which tangent; linearised.h carries them
+ * along. */
 #include "polyhedra/poly.h"
 
-/* A row is condensed when that is for this many steps or more: to find its tangent costs as much as
- * a step. */
-static const double CONDENSE = 3;
+/* A contact is linearised when that is for this many steps or more: to find its tangent costs as
+ * much as a step. */
+static const double WORTH_STEPS = 3;
 
 void poly_account_bond(struct brc_sim *sim, size_t row, double stored)
 {
-    const struct poly_rows *rows = sim->pairs.model_columns;
-    double gained = stored - rows->motion[row][POLY_MOTION_STORED];
-    rows->motion[row][POLY_MOTION_STORED] = stored;
+    const struct poly_contacts *columns = sim->pairs.model_columns;
+    double gained = stored - columns->motion[row][POLY_MOTION_STORED];
+    columns->motion[row][POLY_MOTION_STORED] = stored;
     if (!BRC_OPTION(sim->run.ledger))
         return;
     sim->ledger.bond += gained;
@@ -52,39 +53,41 @@ static void add_bond(const struct poly_contact4 *g, int lane, double force[6], d
  * face's then. */
 static double path_of_sleepers(const struct brc_contacts *c, size_t row, double most)
 {
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     const struct poly_points *points = c->point_columns;
-    size_t p = (size_t)c->p0[row] + (size_t)rows->awake[row];
+    size_t p = (size_t)c->p0[row] + (size_t)columns->awake[row];
     size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
-    double room = rows->skin_left[row];
-    most = poly_least(most, room);
-    for (; p < end && room - points->sleep[p] < most; p++)
+    double skin_left = columns->skin_left[row];
+    most = poly_least(most, skin_left);
+    for (; p < end && skin_left - points->sleep[p] < most; p++)
         if (points->kind[p] != POLY_EDGES || points->feature_valid_to[p] != POLY_FADES)
-            return room - points->sleep[p];
+            return skin_left - points->sleep[p];
     return most;
 }
 
-/* Relative path of a row before its bond can break, or begin or end to pull: openings change by
+/* Relative path of a contact before its bond can break, or begin or end to pull: openings change by
  * twice the path at most, strains by that over the strain length, the twist by the path over the
  * reach of b. */
 static double path_of_bond(const struct poly_batch *batch, int32_t i)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
-    const struct poly_rows *rows = batch->contacts->model_columns;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    double length = *poly_bond_length(rows, (size_t)batch->row[i]);
+    double length = *poly_bond_length(columns, (size_t)batch->row[i]);
     double slope = 2 / (length * p->eps_th), path = 0.5 * fabs(g->opening[i % BRC_LANES]);
     if (p->torsion && p->theta_limit)
         slope += 1 / (batch->sim->bodies.bounding_radius[batch->b[i]] * p->theta_th);
     return p->breakable ? poly_least(path, (1 - g->broken[i % BRC_LANES]) / slope) : path;
 }
 
-/* Relative path for which a row may be condensed, as far as its acting springs do not matter. */
+/* Relative path for which a contact may be linearised, as far as its acting springs do not matter.
+ */
 static double path_left(const struct poly_batch *batch, int32_t i)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
     const struct brc_contacts *c = batch->contacts;
     size_t row = (size_t)batch->row[i];
+    /* The limit by accuracy first; what may begin to touch, or break, only shortens it. */
     double most = p->condensed_path * p->radius;
     if (c->status[row] == BRC_INTACT)
         most = poly_least(most, path_of_bond(batch, i));
@@ -96,13 +99,13 @@ static double path_left(const struct poly_batch *batch, int32_t i)
 /* Whether a path is worth it. What rests and may not move at all is not. */
 static bool is_long(const struct poly_batch *batch, int32_t i, double path)
 {
-    return path > CONDENSE * batch->four[i / BRC_LANES].path[i % BRC_LANES];
+    return path > WORTH_STEPS * batch->four[i / BRC_LANES].path[i % BRC_LANES];
 }
 
 void poly_begin_tangent(struct poly_batch *batch, int32_t i)
 {
-    const struct poly_rows *rows = batch->contacts->model_columns;
-    bool is_whole = !batch->listed[i] || rows->ready[batch->row[i]];
+    const struct poly_contacts *columns = batch->contacts->model_columns;
+    bool is_whole = !batch->listed[i] || columns->ready[batch->row[i]];
     batch->will_linearise[i] = is_whole && is_long(batch, i, path_left(batch, i));
     if (batch->will_linearise[i])
         memset(batch->tangent[i], 0, sizeof batch->tangent[i]);
@@ -111,27 +114,29 @@ void poly_begin_tangent(struct poly_batch *batch, int32_t i)
 void poly_linearise(struct poly_batch *batch, int32_t i)
 {
     struct brc_sim *sim = batch->sim;
-    const struct poly_rows *rows = sim->pairs.model_columns;
+    const struct poly_contacts *columns = sim->pairs.model_columns;
     size_t row = (size_t)batch->row[i];
     bool is_intact = sim->pairs.status[row] == BRC_INTACT;
-    double *motion = rows->motion[row];
+    double *motion = columns->motion[row];
     double stored = is_intact ? batch->four[i / BRC_LANES].bond_stored[i % BRC_LANES] : 0;
     if (is_intact)
         poly_account_bond(sim, row, stored);
-    memset(motion, 0, sizeof rows->motion[row]);
+    memset(motion, 0, sizeof columns->motion[row]);
     motion[POLY_MOTION_STORED] = stored;
+    /* A point that is awake and apart may touch within a few steps. Rather than to look for its
+     * bound here, the contact waits until it sleeps: then it has one. */
     if (!batch->will_linearise[i] || batch->has_apart[i])
         return;
     double end = poly_least(batch->valid_path[i], path_left(batch, i));
     if (!is_long(batch, i, end))
         return;
     motion[POLY_MOTION_END] = end;
-    rows->is_linearised[row] = 1;
+    columns->is_linearised[row] = 1;
     for (int k = 0; k < 6; k++)
-        rows->linearised_force[row][k] =
+        columns->linearised_force[row][k] =
             batch->sum[i][POLY_SUM_NORMAL + k] + batch->sum[i][POLY_SUM_SHEAR + k];
-    memcpy(rows->tangent[row], batch->tangent[i], sizeof rows->tangent[row]);
+    memcpy(columns->tangent[row], batch->tangent[i], sizeof columns->tangent[row]);
     if (is_intact)
-        add_bond(&batch->four[i / BRC_LANES], i % BRC_LANES, rows->linearised_force[row],
-                 (double(*)[6])rows->tangent[row]);
+        add_bond(&batch->four[i / BRC_LANES], i % BRC_LANES, columns->linearised_force[row],
+                 (double(*)[6])columns->tangent[row]);
 }

@@ -1,23 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows that are condensed, four at a time: carried along by their tangents until they have used up
- * their path. */
+/* Contacts that are linearised, four at a time: carried along by their tangents until they have
+ * used up their path. */
 #ifndef POLY_LINEARISED_KERNELS_H
 #define POLY_LINEARISED_KERNELS_H
 
 #include "polyhedra/motion_kernels.inc.h"
 
-/* Force on b and its moment about the centre of a of four rows: what they were, less the tangent
- * times the motion, turned with the pair. */
-BRC_LANES_INLINE void tangent_forces(struct poly_wrench4 *w, const struct poly_rows *rows,
-                                     const struct shifts *s, const int32_t row[BRC_LANES])
+/* Force on b and its moment about the centre of a of four contacts: what they were, less the
+ * tangent times the motion, turned with the pair. */
+BRC_LANES_INLINE void poly_tangent_forces(struct poly_wrench4 *w,
+                                          const struct poly_contacts *columns,
+                                          const struct poly_motion4 *s,
+                                          const int32_t row[BRC_LANES])
 {
     const brc_lanes motion[6] = {s->d[0], s->d[1], s->d[2], s->turn[0], s->turn[1], s->turn[2]};
     brc_lanes first[BRC_LANES], last[BRC_LANES]; /* of six, which begin at 0 and at 2 */
     brc_lanes both[3], turned[3];
     for (int k = 0; k < BRC_LANES; k++) {
-        const double *slope = rows->tangent[row[k]];
-        first[k] = brc_lanes_at(rows->linearised_force[row[k]]);
-        last[k] = brc_lanes_at(rows->linearised_force[row[k]] + 2);
+        const double *slope = columns->tangent[row[k]];
+        first[k] = brc_lanes_at(columns->linearised_force[row[k]]);
+        last[k] = brc_lanes_at(columns->linearised_force[row[k]] + 2);
         for (int j = 0; j < 6; j++) {
             brc_lanes by = brc_lanes_all(((const double *)&motion[j])[k]);
             first[k] -= brc_lanes_at(slope + 6 * j) * by;
@@ -35,12 +37,13 @@ BRC_LANES_INLINE void tangent_forces(struct poly_wrench4 *w, const struct poly_r
     poly_add3(w->m, w->m, turned);
 }
 
-/* Work that four rows take up in a step by the trapezoid rule of ledger.h; their last force and
+/* Work that four contacts take up in a step by the trapezoid rule of ledger.h; their last force and
  * moment are those of the columns. The power of force f and moment m about the centre of a is
  * f . u + m . dw, with the velocity u of b relative to a at that centre, and the spin dw. */
-BRC_LANES_INLINE brc_lanes work_of_rows(const struct brc_contacts *c, const struct poly_wrench4 *w,
-                                        const struct poly_contact4 *g, const int32_t row[BRC_LANES],
-                                        double dt)
+BRC_LANES_INLINE brc_lanes poly_work_of_four(const struct brc_contacts *c,
+                                             const struct poly_wrench4 *w,
+                                             const struct poly_contact4 *g,
+                                             const int32_t row[BRC_LANES], double dt)
 {
     brc_lanes f[3], m[3], u[3], dw[3], back[3];
     brc_lanes_gather3(f, c->f, row);
@@ -56,65 +59,66 @@ BRC_LANES_INLINE brc_lanes work_of_rows(const struct brc_contacts *c, const stru
 }
 
 /* Where the pairs have turned too far, as a whole, for the first order of the turn. */
-BRC_LANES_INLINE brc_mask turns_far(const struct poly_batch *batch, const struct shifts *s)
+BRC_LANES_INLINE brc_mask poly_turns_far(const struct poly_batch *batch,
+                                         const struct poly_motion4 *s)
 {
     double most = 0.5 * poly_params_of(batch->sim)->condensed_path;
     return brc_lanes_less(brc_lanes_all(most * most), brc_lanes_dot(s->both, s->both));
 }
 
-/* Moves four rows by a step. Returns how many of them are left to do: where some have used up their
- * path, none is moved, and the others come first in i. */
-BRC_LANES_INLINE int move_linearised(struct poly_batch *batch, struct numbers *i, int n,
-                                     const bool ledger)
+/* Moves four contacts by a step. Returns how many of them are left to do: where some have used up
+ * their path, none is moved, and the others come first in i. */
+BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_numbers4 *i, int n,
+                                          const bool ledger)
 {
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     struct poly_contact4 g;
     struct poly_wrench4 w;
-    struct frames f;
-    struct shifts s;
+    struct poly_frame4 f;
+    struct poly_motion4 s;
     for (int k = 0; k < BRC_LANES; k++) {
         i->row[k] = i->row[k < n ? k : 0];
         i->a[k] = c->a[i->row[k]];
         i->b[k] = c->b[i->row[k]];
     }
-    motion_of_group(batch, &g, &f, i, false);
-    gather_shifts(&s, rows, i->row);
-    add_shifts(&s, &f, &g, batch->sim->dt);
-    brc_mask stays = brc_lanes_less(s.path, s.end) & ~turns_far(batch, &s);
+    poly_motion_of_four(batch, &g, &f, i, false);
+    poly_motion_gather(&s, columns, i->row);
+    poly_motion_add_step(&s, &f, &g, batch->sim->dt);
+    brc_mask stays = brc_lanes_less(s.path, s.end) & ~poly_turns_far(batch, &s);
     if (brc_lanes_any(~stays)) {
         int left = 0;
         for (int k = 0; k < n; k++) {
-            rows->is_linearised[i->row[k]] = stays[k] != 0;
+            columns->is_linearised[i->row[k]] = stays[k] != 0;
             i->row[left] = i->row[k];
             left += stays[k] != 0;
         }
         return left;
     }
-    tangent_forces(&w, rows, &s, i->row);
-    put_shifts(rows, i->row, &s);
+    poly_tangent_forces(&w, columns, &s, i->row);
+    poly_motion_put(columns, i->row, &s);
     if (ledger)
-        batch->linearised_work +=
-            brc_lanes_where(brc_lanes_first(n), work_of_rows(c, &w, &g, i->row, batch->sim->dt));
-    put_wrenches(c, &w, &g, i->row);
+        batch->linearised_work += brc_lanes_where(
+            brc_lanes_first(n), poly_work_of_four(c, &w, &g, i->row, batch->sim->dt));
+    poly_put_wrenches(c, &w, &g, i->row);
     return 0;
 }
 
-BRC_LANES_INLINE void linearised_kernel(struct poly_batch *batch, const bool ledger)
+BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const bool ledger)
 {
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
-    struct numbers i;
+    const struct poly_contacts *columns = c->model_columns;
+    struct poly_numbers4 i;
     int n = 0;
     batch->linearised_work = brc_lanes_all(0);
     for (size_t row = 0; row < c->n; row++) {
         i.row[n] = (int32_t)row;
-        n += rows->is_linearised[row];
+        n += columns->is_linearised[row];
         if (n == BRC_LANES)
-            n = move_linearised(batch, &i, n, ledger);
+            n = poly_move_linearised(batch, &i, n, ledger);
     }
     while (n > 0)
-        n = move_linearised(batch, &i, n, ledger);
+        n = poly_move_linearised(batch, &i, n, ledger);
     if (ledger)
         batch->sim->ledger.contact_normal += brc_lanes_sum(batch->linearised_work);
 }

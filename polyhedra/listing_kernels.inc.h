@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* One body of a pair as seen from the other. */
-struct side {
+struct poly_seen {
     const struct poly_core *own, *other;
     const double (*v)[3]; /* own vertices in space */
     const double *x;      /* the other's pose */
@@ -24,7 +24,7 @@ struct side {
     double *half;
 };
 
-static inline size_t whole_lanes(int32_t n)
+static inline size_t poly_whole_lanes(int32_t n)
 {
     return ((size_t)n + BRC_LANES - 1) / BRC_LANES * BRC_LANES;
 }
@@ -33,7 +33,9 @@ static inline size_t whole_lanes(int32_t n)
 
 /* Heights of the own vertices above the other's planes. Returns the largest gap along one of these
  * planes: a lower bound of the distance of the cores. */
-BRC_LANES_INLINE double measure_heights(struct side *s)
+/* All heights at once rather than one vertex at a time: the planes of a core are read once, four
+ * side by side, and the same heights tell which vertices, faces and edges are near at all. */
+BRC_LANES_INLINE double poly_measure_heights(struct poly_seen *s)
 {
     const struct poly_face *face = s->other->face;
     int32_t n = s->own->n_vertices, last = s->other->n_faces - 1;
@@ -66,12 +68,12 @@ BRC_LANES_INLINE double measure_heights(struct side *s)
     return poly_most(poly_most(gap[0], gap[1]), poly_most(gap[2], gap[3]));
 }
 
-static const int32_t none_near[POLY_NEAR] = {POLY_NONE_NEAR, POLY_NONE_NEAR, POLY_NONE_NEAR,
-                                             POLY_NONE_NEAR};
+static const int32_t poly_none_near[POLY_NEAR] = {POLY_NONE_NEAR, POLY_NONE_NEAR, POLY_NONE_NEAR,
+                                                  POLY_NONE_NEAR};
 
 /* Vertex v of the own core and a face or place of the other. */
-static int add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, int32_t v,
-                      int32_t place, const int32_t near[POLY_NEAR], double gap)
+static int poly_list_add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, int32_t v,
+                                int32_t place, const int32_t near[POLY_NEAR], double gap)
 {
     struct poly_feature f = {.free = gap,
                              .i = of_b ? place : v,
@@ -82,8 +84,9 @@ static int add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, i
 }
 
 /* Faces of the other core within reach of a vertex; all of them when it is inside. */
-static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct side *s, bool of_b,
-                      int32_t v, const struct poly_pair *p, enum poly_rule rule, double skin)
+static int poly_list_faces(struct brc_context *ctx, struct poly_list *l, const struct poly_seen *s,
+                           bool of_b, int32_t v, const struct poly_pair *p, enum poly_rule rule,
+                           double skin)
 {
     for (int32_t f = 0; f < s->other->n_faces; f++) {
         if (fabs(s->height[(size_t)v * s->stride + (size_t)f]) >= p->contact_distance + skin &&
@@ -91,20 +94,20 @@ static int list_faces(struct brc_context *ctx, struct poly_list *l, const struct
             continue;
         double path = poly_path_to_face(s->other, f, s->q[v], rule, p->contact_distance);
         if (path < skin)
-            BRC_TRY(add_vertex(ctx, l, of_b, v, f, none_near, path));
+            BRC_TRY(poly_list_add_vertex(ctx, l, of_b, v, f, poly_none_near, path));
     }
     return 0;
 }
 
 /* Vertices of the other core (q: of the own one in its frame) that may come within the range where
  * they lower the weight. */
-static void near_vertices(int32_t near[POLY_NEAR], const struct poly_core *other, const double q[3],
-                          double range)
+static void poly_near_vertices(int32_t near[POLY_NEAR], const struct poly_core *other,
+                               const double q[3], double range)
 {
     int32_t n = 0;
-    memcpy(near, none_near, sizeof none_near);
+    memcpy(near, poly_none_near, sizeof poly_none_near);
     for (int32_t u = 0; u < other->n_vertices; u += BRC_LANES) {
-        int32_t at = (int32_t)whole_four((size_t)u, (size_t)other->n_vertices);
+        int32_t at = (int32_t)poly_whole_four((size_t)u, (size_t)other->n_vertices);
         brc_lanes r[3];
         brc_lanes_at3(r, other->vertex + at);
         for (int k = 0; k < 3; k++)
@@ -123,7 +126,7 @@ static void near_vertices(int32_t near[POLY_NEAR], const struct poly_core *other
 }
 
 /* The face of the other core whose plane vertex v is highest above. */
-static int32_t highest_face(const struct side *s, int32_t v)
+static int32_t poly_highest_face(const struct poly_seen *s, int32_t v)
 {
     const double *height = s->height + (size_t)v * s->stride;
     int32_t f = 0;
@@ -132,8 +135,9 @@ static int32_t highest_face(const struct side *s, int32_t v)
     return f;
 }
 
-static int list_vertices(struct brc_context *ctx, struct poly_list *l, const struct side *s,
-                         const struct poly_pair *p, enum poly_rule rule, double skin)
+static int poly_list_vertices(struct brc_context *ctx, struct poly_list *l,
+                              const struct poly_seen *s, const struct poly_pair *p,
+                              enum poly_rule rule, double skin)
 {
     bool of_b = s->own == &p->b;
     double range = sqrt(p->contact_distance * p->contact_distance + p->fade * p->fade) + skin;
@@ -141,17 +145,18 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
         if (s->highest[v] >= p->contact_distance + skin)
             continue;
         if (rule != POLY_MERGED) {
-            BRC_TRY(list_faces(ctx, l, s, of_b, v, p, rule, skin));
+            BRC_TRY(poly_list_faces(ctx, l, s, of_b, v, p, rule, skin));
             continue;
         }
         struct poly_closest at;
         poly_closest_walk(&at, s->other, s->q[v],
-                          poly_feature_code(highest_face(s, v), POLY_ON_FACE));
+                          poly_feature_code(poly_highest_face(s, v), POLY_ON_FACE));
         if (at.s >= p->contact_distance + skin)
             continue;
         int32_t near[POLY_NEAR];
-        near_vertices(near, s->other, s->q[v], range);
-        BRC_TRY(add_vertex(ctx, l, of_b, v, at.feature, near, at.s - p->contact_distance));
+        poly_near_vertices(near, s->other, s->q[v], range);
+        BRC_TRY(
+            poly_list_add_vertex(ctx, l, of_b, v, at.feature, near, at.s - p->contact_distance));
     }
     return 0;
 }
@@ -159,7 +164,8 @@ static int list_vertices(struct brc_context *ctx, struct poly_list *l, const str
 /* --- edges ------------------------------------------------------------------------------------ */
 
 /* An edge that lies beyond reach of one of the other's planes cannot touch. */
-BRC_LANES_INLINE bool is_near(const struct side *s, const int32_t end[2], double reach)
+BRC_LANES_INLINE bool poly_edge_is_near(const struct poly_seen *s, const int32_t end[2],
+                                        double reach)
 {
     const double *h0 = s->height + (size_t)end[0] * s->stride;
     const double *h1 = s->height + (size_t)end[1] * s->stride;
@@ -171,12 +177,12 @@ BRC_LANES_INLINE bool is_near(const struct side *s, const int32_t end[2], double
     return !brc_lanes_any(~brc_lanes_less(highest, brc_lanes_all(reach)));
 }
 
-BRC_LANES_INLINE void find_edges(struct side *s, double reach)
+BRC_LANES_INLINE void poly_find_edges(struct poly_seen *s, double reach)
 {
     s->n_near = 0;
     for (int32_t e = 0; e < s->own->n_edges; e++) {
         const int32_t *end = s->own->end[e];
-        if (!is_near(s, end, reach))
+        if (!poly_edge_is_near(s, end, reach))
             continue;
         double along[3];
         int32_t n = s->n_near++;
@@ -193,13 +199,13 @@ BRC_LANES_INLINE void find_edges(struct side *s, double reach)
 }
 
 /* Pairs of edges to look at. */
-struct edge_pairs {
+struct poly_edge_pairs {
     int32_t i[BRC_LANES], j[BRC_LANES], n;
 };
 
 /* One vertex each of four edges. */
-BRC_LANES_INLINE void gather_ends(brc_lanes r[3], const struct poly_core *c, const double (*v)[3],
-                                  const int32_t edge[BRC_LANES], int end)
+BRC_LANES_INLINE void poly_gather_ends(brc_lanes r[3], const struct poly_core *c,
+                                       const double (*v)[3], const int32_t edge[BRC_LANES], int end)
 {
     const double *at[BRC_LANES];
     for (int i = 0; i < BRC_LANES; i++)
@@ -208,17 +214,18 @@ BRC_LANES_INLINE void gather_ends(brc_lanes r[3], const struct poly_core *c, con
         r[k] = (brc_lanes){at[0][k], at[1][k], at[2][k], at[3][k]};
 }
 
-/* Relative paths before the edges can touch; right for paths up to skin. While a foot is beyond its
- * edge by a path s out of the end, a relative path of the bodies by less than s cannot bring it
- * inside (poly_path_to_end). */
-BRC_LANES_INLINE brc_lanes paths_of_edges(const struct poly_pair *p, const struct edge_pairs *at,
-                                          enum poly_rule rule, double skin)
+/* Relative paths before the edges can touch; right for paths up to skin. While a closest point is
+ * beyond its edge by a path s out of the end, a relative path of the bodies by less than s cannot
+ * bring it inside (poly_path_to_end). */
+BRC_LANES_INLINE brc_lanes poly_paths_of_edges(const struct poly_pair *p,
+                                               const struct poly_edge_pairs *at,
+                                               enum poly_rule rule, double skin)
 {
     struct poly_crossings x;
     brc_lanes ends[4][3];
     for (int k = 0; k < 2; k++) {
-        gather_ends(ends[k], &p->a, p->va, at->i, k);
-        gather_ends(ends[2 + k], &p->b, p->vb, at->j, k);
+        poly_gather_ends(ends[k], &p->a, p->va, at->i, k);
+        poly_gather_ends(ends[2 + k], &p->b, p->vb, at->j, k);
     }
     poly_cross_edges(&x, ends);
     brc_lanes path = poly_edge_gap(&x, p->contact_distance);
@@ -228,15 +235,16 @@ BRC_LANES_INLINE brc_lanes paths_of_edges(const struct poly_pair *p, const struc
 }
 
 /* Lists those of the pairs that can touch within the skin. */
-BRC_LANES_INLINE int list_pairs(struct brc_context *ctx, struct poly_list *l, struct edge_pairs *at,
-                                const struct poly_pair *p, enum poly_rule rule, double skin)
+BRC_LANES_INLINE int poly_list_edge_pairs(struct brc_context *ctx, struct poly_list *l,
+                                          struct poly_edge_pairs *at, const struct poly_pair *p,
+                                          enum poly_rule rule, double skin)
 {
     int32_t n = at->n;
     for (int32_t k = n; k < BRC_LANES; k++) {
         at->i[k] = at->i[0];
         at->j[k] = at->j[0];
     }
-    brc_lanes path = paths_of_edges(p, at, rule, skin);
+    brc_lanes path = poly_paths_of_edges(p, at, rule, skin);
     at->n = 0;
     for (int32_t k = 0; k < n; k++) {
         struct poly_feature f = {.free = path[k], .i = at->i[k], .j = at->j[k], .kind = POLY_EDGES};
@@ -246,12 +254,12 @@ BRC_LANES_INLINE int list_pairs(struct brc_context *ctx, struct poly_list *l, st
     return 0;
 }
 
-BRC_LANES_INLINE int list_edges(struct brc_context *ctx, struct poly_list *l,
-                                const struct side sides[2], const struct poly_pair *p,
-                                enum poly_rule rule, double skin)
+BRC_LANES_INLINE int poly_list_edges(struct brc_context *ctx, struct poly_list *l,
+                                     const struct poly_seen sides[2], const struct poly_pair *p,
+                                     enum poly_rule rule, double skin)
 {
-    struct edge_pairs at = {.n = 0};
-    const struct side *a = &sides[0], *b = &sides[1];
+    struct poly_edge_pairs at = {.n = 0};
+    const struct poly_seen *a = &sides[0], *b = &sides[1];
     for (int32_t i = 0; i < a->n_near; i++)
         for (int32_t j = 0; j < b->n_near; j += BRC_LANES) {
             brc_lanes d[3],
@@ -266,19 +274,19 @@ BRC_LANES_INLINE int list_edges(struct brc_context *ctx, struct poly_list *l,
                 at.i[at.n] = a->edge[i];
                 at.j[at.n++] = b->edge[j + k];
                 if (at.n == BRC_LANES)
-                    BRC_TRY(list_pairs(ctx, l, &at, p, rule, skin));
+                    BRC_TRY(poly_list_edge_pairs(ctx, l, &at, p, rule, skin));
             }
         }
-    return at.n > 0 ? list_pairs(ctx, l, &at, p, rule, skin) : 0;
+    return at.n > 0 ? poly_list_edge_pairs(ctx, l, &at, p, rule, skin) : 0;
 }
 
 /* --- pairs of bodies -------------------------------------------------------------------------- */
 
 /* Takes room for a side from the list's work space, which begins at *next. */
-static void lay_out(struct side *s, double **next, int32_t **edge)
+static void poly_lay_out(struct poly_seen *s, double **next, int32_t **edge)
 {
-    size_t n = (size_t)s->own->n_vertices, edges = whole_lanes(s->own->n_edges);
-    s->stride = whole_lanes(s->other->n_faces);
+    size_t n = (size_t)s->own->n_vertices, edges = poly_whole_lanes(s->own->n_edges);
+    s->stride = poly_whole_lanes(s->other->n_faces);
     s->q = (double(*)[3]) * next;
     s->height = *next + 3 * n;
     s->highest = s->height + n * s->stride;
@@ -292,8 +300,8 @@ static void lay_out(struct side *s, double **next, int32_t **edge)
 
 static int reserve(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p)
 {
-    size_t faces = whole_lanes(p->a.n_faces) + whole_lanes(p->b.n_faces);
-    size_t edges = whole_lanes(p->a.n_edges) + whole_lanes(p->b.n_edges);
+    size_t faces = poly_whole_lanes(p->a.n_faces) + poly_whole_lanes(p->b.n_faces);
+    size_t edges = poly_whole_lanes(p->a.n_edges) + poly_whole_lanes(p->b.n_edges);
     size_t n = (size_t)(p->a.n_vertices + p->b.n_vertices) * (4 + faces) + 4 * edges;
     if (n > l->cap_work) {
         double *grown = brc_realloc(ctx, l->work, 2 * n, sizeof *grown);
@@ -312,7 +320,7 @@ static int reserve(struct brc_context *ctx, struct poly_list *l, const struct po
     return 0;
 }
 
-BRC_LANES_INLINE int list_features(struct brc_context *ctx, struct poly_list *l,
+BRC_LANES_INLINE int poly_list_all(struct brc_context *ctx, struct poly_list *l,
                                    const struct poly_pair *p, enum poly_rule rule, double skin,
                                    double *allowance)
 {
@@ -321,19 +329,20 @@ BRC_LANES_INLINE int list_features(struct brc_context *ctx, struct poly_list *l,
     BRC_TRY(reserve(ctx, l, p));
     double *next = l->work;
     int32_t *edge = l->edge;
-    struct side sides[2] = {{.own = &p->a, .other = &p->b, .v = p->va, .x = p->xb, .r = p->rb},
-                            {.own = &p->b, .other = &p->a, .v = p->vb, .x = p->xa, .r = p->ra}};
-    lay_out(&sides[0], &next, &edge);
-    lay_out(&sides[1], &next, &edge);
-    double gap = poly_most(measure_heights(&sides[0]), measure_heights(&sides[1]));
+    struct poly_seen sides[2] = {
+        {.own = &p->a, .other = &p->b, .v = p->va, .x = p->xb, .r = p->rb},
+        {.own = &p->b, .other = &p->a, .v = p->vb, .x = p->xa, .r = p->ra}};
+    poly_lay_out(&sides[0], &next, &edge);
+    poly_lay_out(&sides[1], &next, &edge);
+    double gap = poly_most(poly_measure_heights(&sides[0]), poly_measure_heights(&sides[1]));
     *allowance = poly_most(skin, gap - p->contact_distance);
     if (gap >= reach)
         return 0;
     for (int k = 0; k < 2; k++) {
-        find_edges(&sides[k], reach);
-        BRC_TRY(list_vertices(ctx, l, &sides[k], p, rule, skin));
+        poly_find_edges(&sides[k], reach);
+        BRC_TRY(poly_list_vertices(ctx, l, &sides[k], p, rule, skin));
     }
-    return list_edges(ctx, l, sides, p, rule, skin);
+    return poly_list_edges(ctx, l, sides, p, rule, skin);
 }
 
 #endif

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table of operations by which common/ knows this model, what is checked before a run, and
+ * the line that a run prints. */
 #include "polyhedra/poly.h"
 
 #include "common/specimen/oblique.h"
@@ -11,9 +13,9 @@
 static const struct brc_param param_list[] = {BRC_PARAM_LIST(POLY_PARAMS)};
 #undef BRC_OWNER
 
-#define BRC_OWNER struct poly_rows
-static const struct brc_field row_fields[] = {
-    POLY_ROW_FIELDS(BRC_FIELD, BRC_FIELD3, BRC_FIELD_RENAMED, BRC_FIELD3_RENAMED)};
+#define BRC_OWNER struct poly_contacts
+static const struct brc_field contact_list[] = {
+    POLY_CONTACT_FIELDS(BRC_FIELD, BRC_FIELD3, BRC_FIELD_RENAMED, BRC_FIELD3_RENAMED)};
 #undef BRC_OWNER
 
 #define BRC_OWNER struct poly_points
@@ -95,6 +97,8 @@ static void release(void *state)
     free(st);
 }
 
+/* Chosen once for a run: all instruction sets give the same bits, so that `run.simd` is for
+ * tests and for measuring. */
 static void select_kernels(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
@@ -113,12 +117,12 @@ static void select_kernels(struct brc_sim *sim, void *state)
 /* Items are not saved: they are made anew. */
 static int restore(struct brc_sim *sim, void *state)
 {
-    const struct poly_rows *rows = sim->pairs.model_columns;
+    const struct poly_contacts *columns = sim->pairs.model_columns;
     const struct poly_points *points = sim->pairs.point_columns;
     (void)state;
     for (size_t p = 0; p < sim->pairs.points.n; p++)
         points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
-    memset(rows->ready, 0, sim->pairs.n * sizeof *rows->ready);
+    memset(columns->ready, 0, sim->pairs.n * sizeof *columns->ready);
     return 0;
 }
 
@@ -160,14 +164,14 @@ const struct brc_model brc_model_polyhedra = {
                 "three-dimensional bonded granular materials with general shapes. Computer Physics "
                 "Communications 183 (2012) 266-277",
     .params = BRC_PARAMS(param_list, struct poly_params),
-    .contact_fields = BRC_FIELDSET(row_fields, struct poly_rows),
+    .contact_fields = BRC_FIELDSET(contact_list, struct poly_contacts),
     .point_fields = BRC_FIELDSET(point_fields, struct poly_points),
     .point_lanes = BRC_LANES,
     .flags = BRC_MODEL_ROTATES | BRC_MODEL_ORIENTED,
     .no_platens = "room awake carried shift held tangent kind j near sleep",
     .shape = poly_shape,
     .bond = poly_open_bonds,
-    .pairs = poly_update_rows,
+    .pairs = poly_update_contacts,
     .forces = poly_forces,
     .platens = poly_platens,
     .energy = poly_energy,

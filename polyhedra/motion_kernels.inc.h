@@ -8,12 +8,13 @@
 
 #include <string.h>
 
-/* The rows of a group, as gathers want them. */
-struct numbers {
+/* The contacts of a group, as gathers want them. */
+struct poly_numbers4 {
     int32_t row[BRC_LANES], a[BRC_LANES], b[BRC_LANES];
 };
 
-BRC_LANES_INLINE void numbers_of(struct numbers *i, const struct poly_batch *batch, int32_t group)
+BRC_LANES_INLINE void poly_numbers_of(struct poly_numbers4 *i, const struct poly_batch *batch,
+                                      int32_t group)
 {
     memcpy(i->row, batch->row + BRC_LANES * group, sizeof i->row);
     memcpy(i->a, batch->a + BRC_LANES * group, sizeof i->a);
@@ -21,8 +22,8 @@ BRC_LANES_INLINE void numbers_of(struct numbers *i, const struct poly_batch *bat
 }
 
 /* r += s (w x (w x a)) */
-BRC_LANES_INLINE void add_double_cross(brc_lanes r[3], brc_lanes s, const brc_lanes w[3],
-                                       const brc_lanes a[3])
+BRC_LANES_INLINE void poly_add_double_cross(brc_lanes r[3], brc_lanes s, const brc_lanes w[3],
+                                            const brc_lanes a[3])
 {
     brc_lanes c[3];
     brc_lanes_cross(c, w, a);
@@ -30,8 +31,8 @@ BRC_LANES_INLINE void add_double_cross(brc_lanes r[3], brc_lanes s, const brc_la
     poly_axpy3(r, s, c);
 }
 
-/* What points want of a row. */
-struct frames {
+/* What points want of a contact. */
+struct poly_frame4 {
     brc_lanes xa[3], gn, x[3], gt;
     /* b moves at slip + slope . arm relative to a, arm from a; turn is a quarter of the sum of both
      * turns in the step */
@@ -45,13 +46,14 @@ struct frames {
  * body does not slip but for the third order of the step's angle: for an arm r from a,
  * dv + (wb - h wb wb)(r - x) - (wa - h wa wa) r, with cross products for products and h = dt / 2.
  */
-BRC_LANES_INLINE void slip_of_row(struct frames *f, const struct poly_contact4 *g, double dt)
+BRC_LANES_INLINE void poly_slip_of_four(struct poly_frame4 *f, const struct poly_contact4 *g,
+                                        double dt)
 {
     const brc_lanes *wa = g->wa, *wb = g->wb, h = brc_lanes_all(0.5 * dt);
     brc_lanes dw[3], c[3];
     brc_lanes_cross(c, wb, g->x);
     poly_sub3(f->slip, g->dv, c);
-    add_double_cross(f->slip, h, wb, g->x);
+    poly_add_double_cross(f->slip, h, wb, g->x);
     poly_sub3(dw, wb, wa);
     brc_lanes widen = h * (brc_lanes_dot(wb, wb) - brc_lanes_dot(wa, wa));
     for (int i = 0; i < 3; i++) {
@@ -66,7 +68,8 @@ BRC_LANES_INLINE void slip_of_row(struct frames *f, const struct poly_contact4 *
 }
 
 /* What b moves relative to a at an arm from the centre of a. */
-BRC_LANES_INLINE void slip_at(brc_lanes u[3], const struct frames *f, const brc_lanes arm[3])
+BRC_LANES_INLINE void poly_slip_at(brc_lanes u[3], const struct poly_frame4 *f,
+                                   const brc_lanes arm[3])
 {
     for (int k = 0; k < 3; k++)
         u[k] = brc_lanes_dot(f->along[k].slope, arm);
@@ -74,8 +77,8 @@ BRC_LANES_INLINE void slip_at(brc_lanes u[3], const struct frames *f, const brc_
 }
 
 /* Power of force and moments of a wrench on both bodies, for the offset x of the centres. */
-BRC_LANES_INLINE brc_lanes power(const struct poly_wrench4 *w, const struct poly_contact4 *g,
-                                 const brc_lanes x[3])
+BRC_LANES_INLINE brc_lanes poly_power(const struct poly_wrench4 *w, const struct poly_contact4 *g,
+                                      const brc_lanes x[3])
 {
     brc_lanes tb[3];
     brc_lanes_cross(tb, x, w->f);
@@ -83,8 +86,8 @@ BRC_LANES_INLINE brc_lanes power(const struct poly_wrench4 *w, const struct poly
     return brc_lanes_dot(w->f, g->dv) - brc_lanes_dot(w->m, g->wa) + brc_lanes_dot(tb, g->wb);
 }
 
-/* Lane i to the frame of row i. */
-BRC_LANES_INLINE void put_frames(double (*to)[POLY_FRAME], struct frames *f)
+/* Lane i to the frame of contact i. */
+BRC_LANES_INLINE void poly_put_frames(double (*to)[POLY_FRAME], struct poly_frame4 *f)
 {
     brc_lanes *part = (brc_lanes *)f;
     for (int k = 0; k < POLY_FRAME; k += BRC_LANES) {
@@ -97,8 +100,9 @@ BRC_LANES_INLINE void put_frames(double (*to)[POLY_FRAME], struct frames *f)
 /* Bound of the path that points of b have made in the frame of a in this step. Motions that both
  * share, turns included, do not count; the last term is of second order in the turn. a's vertices
  * near b move with it too, so its reach is taken larger by the range of a contact. */
-BRC_LANES_INLINE brc_lanes relative_path(const struct poly_contact4 *g, const brc_lanes reach_a,
-                                         const brc_lanes reach_b, double dt)
+BRC_LANES_INLINE brc_lanes poly_relative_path(const struct poly_contact4 *g,
+                                              const brc_lanes reach_a, const brc_lanes reach_b,
+                                              double dt)
 {
     brc_lanes u[3], dw[3];
     brc_lanes_cross(u, g->x, g->wa);
@@ -110,8 +114,8 @@ BRC_LANES_INLINE brc_lanes relative_path(const struct poly_contact4 *g, const br
 }
 
 /* Viscosity and friction. A platen does not give way: the mass that swings at it is the grain's. */
-BRC_LANES_INLINE void laws_of_group(struct frames *f, const struct poly_batch *batch,
-                                    const struct numbers *i, const bool is_platens)
+BRC_LANES_INLINE void poly_laws_of_four(struct poly_frame4 *f, const struct poly_batch *batch,
+                                        const struct poly_numbers4 *i, const bool is_platens)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
     f->gn = f->gt = brc_lanes_all(0);
@@ -131,9 +135,9 @@ BRC_LANES_INLINE void laws_of_group(struct frames *f, const struct poly_batch *b
                                         : 0;
 }
 
-BRC_LANES_INLINE void motion_of_group(const struct poly_batch *batch, struct poly_contact4 *g,
-                                      struct frames *f, const struct numbers *i,
-                                      const bool is_platens)
+BRC_LANES_INLINE void poly_motion_of_four(const struct poly_batch *batch, struct poly_contact4 *g,
+                                          struct poly_frame4 *f, const struct poly_numbers4 *i,
+                                          const bool is_platens)
 {
     const struct brc_bodies *bodies = &batch->sim->bodies;
     brc_lanes xa[3], xb[3], va[3], vb[3];
@@ -147,17 +151,17 @@ BRC_LANES_INLINE void motion_of_group(const struct poly_batch *batch, struct pol
     poly_sub3(g->dv, vb, va);
     poly_set3(f->xa, xa[0], xa[1], xa[2]);
     poly_set3(f->x, g->x[0], g->x[1], g->x[2]);
-    slip_of_row(f, g, batch->sim->dt);
-    laws_of_group(f, batch, i, is_platens);
+    poly_slip_of_four(f, g, batch->sim->dt);
+    poly_laws_of_four(f, batch, i, is_platens);
     if (!is_platens)
-        g->path =
-            relative_path(g, poly_gather(bodies->bounding_radius, i->a),
-                          poly_gather(bodies->bounding_radius, i->b) + batch->len.contact_distance,
-                          batch->sim->dt);
+        g->path = poly_relative_path(g, poly_gather(bodies->bounding_radius, i->a),
+                                     poly_gather(bodies->bounding_radius, i->b) +
+                                         batch->len.contact_distance,
+                                     batch->sim->dt);
 }
 
-/* Values first and on of what each of four rows has in its column, as fours. */
-BRC_LANES_INLINE void gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int n)
+/* Values first and on of what each of four contacts has in its column, as fours. */
+BRC_LANES_INLINE void poly_gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int n)
 {
     for (int k = 0; k < n; k += BRC_LANES) {
         const double *const p[BRC_LANES] = {from[0] + k, from[1] + k, from[2] + k, from[3] + k};
@@ -166,15 +170,15 @@ BRC_LANES_INLINE void gather_fours(brc_lanes *r, const double *const from[BRC_LA
 }
 
 /* Four bonds, as POLY_BOND has them. */
-struct halves {
+struct poly_halves4 {
     brc_lanes ca[3], area, cb[3], length, na[3], none_na, nb[3], none_nb, ta[3], none_ta, tb[3],
         none_tb;
 };
 
 /* Constants of the bonds; zero stiffness where there is none. */
-BRC_LANES_INLINE void constants_of_bonds(struct poly_bonds4 *bonds, const struct poly_params *p,
-                                         const struct halves *halves, brc_mask intact,
-                                         const bool torsion)
+BRC_LANES_INLINE void poly_bond_constants(struct poly_bonds4 *bonds, const struct poly_params *p,
+                                          const struct poly_halves4 *halves, brc_mask intact,
+                                          const bool torsion)
 {
     brc_lanes area = halves->area, length = halves->length;
     brc_lanes stiff = brc_lanes_where(intact, area / length);
@@ -190,20 +194,20 @@ BRC_LANES_INLINE void constants_of_bonds(struct poly_bonds4 *bonds, const struct
 }
 
 /* Rotation matrices of four bodies. */
-BRC_LANES_INLINE void gather_rotation(brc_lanes r[9], double (*rotation)[3][3],
-                                      const int32_t i[BRC_LANES])
+BRC_LANES_INLINE void poly_gather_rotation(brc_lanes r[9], double (*rotation)[3][3],
+                                           const int32_t i[BRC_LANES])
 {
     const double *const from[BRC_LANES] = {rotation[i[0]][0], rotation[i[1]][0], rotation[i[2]][0],
                                            rotation[i[3]][0]};
-    gather_fours(r, from, 8);
+    poly_gather_fours(r, from, 8);
     r[8] = (brc_lanes){from[0][8], from[1][8], from[2][8], from[3][8]};
 }
 
 /* The hold of a platen is half a bond: without torsion and, unless it holds in all directions,
  * without shear. The platen is rigid and does not turn: its normal is the hold's. */
-BRC_LANES_INLINE void bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond_pose4 *pose,
-                                     const struct brc_sim *sim, const struct numbers *i,
-                                     const brc_lanes nb[3])
+BRC_LANES_INLINE void poly_bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond_pose4 *pose,
+                                          const struct brc_sim *sim, const struct poly_numbers4 *i,
+                                          const brc_lanes nb[3])
 {
     brc_lanes back[3];
     poly_scale3(back, nb, brc_lanes_all(-1));
@@ -215,55 +219,56 @@ BRC_LANES_INLINE void bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond
 
 /* Constants and poses of the bonds of four contacts whose centres are at x from a to b. Returns
  * where they are intact. */
-BRC_LANES_INLINE brc_mask bonds_of_group(struct poly_bonds4 *bonds, struct poly_bond_pose4 *pose,
-                                         const struct brc_sim *sim, const struct poly_state *st,
-                                         const struct brc_contacts *c, const struct numbers *i,
-                                         const brc_lanes x[3], const bool torsion,
-                                         const bool is_platens)
+BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
+                                             struct poly_bond_pose4 *pose,
+                                             const struct brc_sim *sim, const struct poly_state *st,
+                                             const struct brc_contacts *c,
+                                             const struct poly_numbers4 *i, const brc_lanes x[3],
+                                             const bool torsion, const bool is_platens)
 {
-    const struct poly_rows *rows = c->model_columns;
-    const double *const from[BRC_LANES] = {rows->bond[i->row[0]], rows->bond[i->row[1]],
-                                           rows->bond[i->row[2]], rows->bond[i->row[3]]};
+    const struct poly_contacts *columns = c->model_columns;
+    const double *const from[BRC_LANES] = {columns->bond[i->row[0]], columns->bond[i->row[1]],
+                                           columns->bond[i->row[2]], columns->bond[i->row[3]]};
     const uint8_t status[BRC_LANES] = {c->status[i->row[0]], c->status[i->row[1]],
                                        c->status[i->row[2]], c->status[i->row[3]]};
     brc_mask intact = brc_lanes_equal(status, BRC_INTACT);
     brc_lanes ra[9], rb[9], na[3], nb[3], ta[3], tb[3];
-    struct halves halves;
-    gather_fours((brc_lanes *)&halves, from, torsion ? POLY_BOND : POLY_BOND_TA);
-    constants_of_bonds(bonds, poly_params_of(sim), &halves, intact, torsion);
-    gather_rotation(ra, st->rotation, i->a);
-    gather_rotation(rb, st->rotation, i->b);
-    body_to_space(pose->pa, ra, halves.ca);
-    body_to_space(pose->pb, rb, halves.cb);
+    struct poly_halves4 halves;
+    poly_gather_fours((brc_lanes *)&halves, from, torsion ? POLY_BOND : POLY_BOND_TA);
+    poly_bond_constants(bonds, poly_params_of(sim), &halves, intact, torsion);
+    poly_gather_rotation(ra, st->rotation, i->a);
+    poly_gather_rotation(rb, st->rotation, i->b);
+    poly_to_space4(pose->pa, ra, halves.ca);
+    poly_to_space4(pose->pb, rb, halves.cb);
     poly_add3(pose->pb, pose->pb, x);
-    body_to_space(nb, rb, halves.nb);
+    poly_to_space4(nb, rb, halves.nb);
     if (is_platens) {
-        bonds_to_holds(bonds, pose, sim, i, nb);
+        poly_bonds_to_holds(bonds, pose, sim, i, nb);
     } else {
-        body_to_space(na, ra, halves.na);
+        poly_to_space4(na, ra, halves.na);
         poly_mean_normal(pose->n, na, nb);
     }
     poly_mask3(pose->n, intact, pose->n);
     pose->twist = brc_lanes_all(0);
     if (torsion) {
-        body_to_space(ta, ra, halves.ta);
-        body_to_space(tb, rb, halves.tb);
+        poly_to_space4(ta, ra, halves.ta);
+        poly_to_space4(tb, rb, halves.tb);
         pose->twist = poly_twist(pose->n, ta, tb, intact);
     }
     return intact;
 }
 
 /* Wrench, stiffness, energy and breaking of the bonds of four contacts. */
-BRC_LANES_INLINE void bond_forces(struct poly_batch *batch, struct poly_contact4 *g,
-                                  const struct numbers *i, const bool torsion,
-                                  const bool linearised, const bool is_platens)
+BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_contact4 *g,
+                                       const struct poly_numbers4 *i, const bool torsion,
+                                       const bool linearised, const bool is_platens)
 {
     struct poly_bonds4 bonds;
     struct poly_bond_pose4 pose;
     struct poly_bond_state4 r;
     brc_lanes back[3], c[3];
-    brc_mask intact = bonds_of_group(&bonds, &pose, batch->sim, batch->st, batch->contacts, i, g->x,
-                                     torsion, is_platens);
+    brc_mask intact = poly_bonds_of_four(&bonds, &pose, batch->sim, batch->st, batch->contacts, i,
+                                         g->x, torsion, is_platens);
     poly_bond_law(&r, &bonds, &pose);
     g->opening = r.opening;
     g->bond_stored = r.energy;
@@ -286,31 +291,31 @@ BRC_LANES_INLINE void bond_forces(struct poly_batch *batch, struct poly_contact4
     poly_set3(g->bond_arm, r.arm[0], r.arm[1], r.arm[2]);
 }
 
-/* What rows have used of their room, `used` since they were looked at last; calm rows have nothing
- * to decide in this step. */
-BRC_LANES_INLINE void rooms_of_group(struct poly_batch *batch, struct poly_contact4 *g,
-                                     brc_lanes used, int32_t group)
+/* What contacts have used of their skin, `used` since they were looked at last; stable contacts
+ * have nothing to decide in this step. */
+BRC_LANES_INLINE void poly_skins_of_four(struct poly_batch *batch, struct poly_contact4 *g,
+                                         brc_lanes used, int32_t group)
 {
     const struct brc_bodies *bodies = &batch->sim->bodies;
-    const struct poly_rows *rows = batch->contacts->model_columns;
-    for (int32_t k = 0, i = BRC_LANES * group; k < BRC_LANES && i < batch->n_rows; k++, i++) {
+    const struct poly_contacts *columns = batch->contacts->model_columns;
+    for (int32_t k = 0, i = BRC_LANES * group; k < BRC_LANES && i < batch->n_contacts; k++, i++) {
         size_t row = (size_t)batch->row[i];
-        double travel = bodies->path_length[batch->a[i]], wake = rows->rebuild_at[row];
-        g->gap[k] = wake - travel - bodies->path_length[batch->b[i]];
+        double path_a = bodies->path_length[batch->a[i]], rebuild_at = columns->rebuild_at[row];
+        g->gap[k] = rebuild_at - path_a - bodies->path_length[batch->b[i]];
         if (batch->listed[i]) {
-            rows->skin_left[row] -= used[k];
+            columns->skin_left[row] -= used[k];
             batch->is_stable[i] =
-                rows->ready[row] && rows->skin_left[row] > rows->stable_above[row];
+                columns->ready[row] && columns->skin_left[row] > columns->stable_above[row];
         } else {
-            batch->is_stable[i] = travel + bodies->path_length[batch->b[i]] < wake;
+            batch->is_stable[i] = path_a + bodies->path_length[batch->b[i]] < rebuild_at;
         }
         batch->is_stable[i] &= !(g->broken[k] > 1);
     }
 }
 
-/* The rows' columns: force on b and moments about both centres of a wrench about that of a. */
-BRC_LANES_INLINE void put_wrenches(const struct brc_contacts *c, const struct poly_wrench4 *w,
-                                   const struct poly_contact4 *g, const int32_t row[BRC_LANES])
+/* The contacts' columns: force on b and moments about both centres of a wrench about that of a. */
+BRC_LANES_INLINE void poly_put_wrenches(const struct brc_contacts *c, const struct poly_wrench4 *w,
+                                        const struct poly_contact4 *g, const int32_t row[BRC_LANES])
 {
     brc_lanes ta[3], tb[3];
     brc_lanes_cross(tb, g->x, w->f);
@@ -323,35 +328,37 @@ BRC_LANES_INLINE void put_wrenches(const struct brc_contacts *c, const struct po
     brc_lanes_scatter3(c->tb, row, tb);
 }
 
-/* --- condensed rows --------------------------------------------------------------------------- */
+/* --- linearised contacts
+ * --------------------------------------------------------------------------- */
 
-/* Motion of four rows since they were computed literally, as POLY_MOTION has it. */
-struct shifts {
+/* Motion of four contacts since they were computed literally, as POLY_MOTION has it. */
+struct poly_motion4 {
     brc_lanes d[3], path, turn[3], end, both[3], stored;
 };
 
-BRC_LANES_INLINE void gather_shifts(struct shifts *s, const struct poly_rows *rows,
-                                    const int32_t row[BRC_LANES])
+BRC_LANES_INLINE void poly_motion_gather(struct poly_motion4 *s,
+                                         const struct poly_contacts *columns,
+                                         const int32_t row[BRC_LANES])
 {
-    const double *const from[BRC_LANES] = {rows->motion[row[0]], rows->motion[row[1]],
-                                           rows->motion[row[2]], rows->motion[row[3]]};
-    gather_fours((brc_lanes *)s, from, POLY_MOTION);
+    const double *const from[BRC_LANES] = {columns->motion[row[0]], columns->motion[row[1]],
+                                           columns->motion[row[2]], columns->motion[row[3]]};
+    poly_gather_fours((brc_lanes *)s, from, POLY_MOTION);
 }
 
-BRC_LANES_INLINE void put_shifts(const struct poly_rows *rows, const int32_t row[BRC_LANES],
-                                 struct shifts *s)
+BRC_LANES_INLINE void poly_motion_put(const struct poly_contacts *columns,
+                                      const int32_t row[BRC_LANES], struct poly_motion4 *s)
 {
     brc_lanes *part = (brc_lanes *)s;
     for (int k = 0; k < POLY_MOTION; k += BRC_LANES) {
         brc_lanes_transpose(part + k);
         for (int i = 0; i < BRC_LANES; i++)
-            brc_lanes_put(rows->motion[row[i]] + k, part[k + i]);
+            brc_lanes_put(columns->motion[row[i]] + k, part[k + i]);
     }
 }
 
 /* Adds the motion of the step. */
-BRC_LANES_INLINE void add_shifts(struct shifts *s, const struct frames *f,
-                                 const struct poly_contact4 *g, double dt)
+BRC_LANES_INLINE void poly_motion_add_step(struct poly_motion4 *s, const struct poly_frame4 *f,
+                                           const struct poly_contact4 *g, double dt)
 {
     for (int k = 0; k < 3; k++) {
         s->d[k] += dt * f->slip[k];
@@ -361,16 +368,17 @@ BRC_LANES_INLINE void add_shifts(struct shifts *s, const struct frames *f,
     s->path += g->path;
 }
 
-/* Makes the frames of rows that are computed literally those of the motion since they were computed
- * last: slip and slope are displacements. Returns the path of that motion. */
-BRC_LANES_INLINE brc_lanes shift_frames(const struct poly_batch *batch, struct frames *f,
-                                        const struct poly_contact4 *g, const struct numbers *i)
+/* Makes the frames of contacts that are computed literally those of the motion since they were
+ * computed last: slip and slope are displacements. Returns the path of that motion. */
+BRC_LANES_INLINE brc_lanes poly_frames_since(const struct poly_batch *batch, struct poly_frame4 *f,
+                                             const struct poly_contact4 *g,
+                                             const struct poly_numbers4 *i)
 {
-    const struct poly_rows *rows = batch->contacts->model_columns;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
     const brc_lanes none = brc_lanes_all(0);
-    struct shifts s;
-    gather_shifts(&s, rows, i->row);
-    add_shifts(&s, f, g, batch->sim->dt);
+    struct poly_motion4 s;
+    poly_motion_gather(&s, columns, i->row);
+    poly_motion_add_step(&s, f, g, batch->sim->dt);
     for (int k = 0; k < 3; k++) {
         f->slip[k] = s.d[k];
         f->along[k].turn = s.both[k];
@@ -381,30 +389,30 @@ BRC_LANES_INLINE brc_lanes shift_frames(const struct poly_batch *batch, struct f
     return s.path;
 }
 
-BRC_LANES_INLINE void motion_kernel(struct poly_batch *batch, const bool torsion,
-                                    const bool linearised, const bool is_platens)
+BRC_LANES_INLINE void poly_motion_kernel(struct poly_batch *batch, const bool torsion,
+                                         const bool linearised, const bool is_platens)
 {
     const struct brc_contacts *c = batch->contacts;
     poly_clear((brc_lanes *)batch->sum, sizeof batch->sum);
-    for (int32_t four = 0; BRC_LANES * four < batch->n_rows; four++) {
+    for (int32_t four = 0; BRC_LANES * four < batch->n_contacts; four++) {
         struct poly_contact4 *g = &batch->four[four];
-        struct numbers i;
-        struct frames f;
+        struct poly_numbers4 i;
+        struct poly_frame4 f;
         bool has_bond = false;
-        numbers_of(&i, batch, four);
-        motion_of_group(batch, g, &f, &i, is_platens);
+        poly_numbers_of(&i, batch, four);
+        poly_motion_of_four(batch, g, &f, &i, is_platens);
         brc_lanes used = g->path;
         if (linearised)
-            used = shift_frames(batch, &f, g, &i);
+            used = poly_frames_since(batch, &f, g, &i);
         for (int k = 0; k < BRC_LANES; k++)
             has_bond |= c->status[i.row[k]] == BRC_INTACT;
         g->k[0] = g->k[1] = g->k[2] = g->broken = g->bond_stored = brc_lanes_all(0);
         poly_clear((brc_lanes *)&g->bond, sizeof g->bond);
         if (has_bond)
-            bond_forces(batch, g, &i, torsion, linearised, is_platens);
+            poly_bond_forces(batch, g, &i, torsion, linearised, is_platens);
         if (!is_platens)
-            rooms_of_group(batch, g, used, four);
-        put_frames(batch->frame + BRC_LANES * four, &f);
+            poly_skins_of_four(batch, g, used, four);
+        poly_put_frames(batch->frame + BRC_LANES * four, &f);
     }
 }
 

@@ -18,6 +18,7 @@ BRC_LANES_INLINE brc_mask poly_platen_geometry(struct poly_geometry4 *t, const s
     for (int k = 0; k < BRC_LANES; k++) {
         const struct brc_platen *platen = brc_sim_platen(sim, body[k]);
         const double *x = st->global_vertices[vertex[k]];
+        /* The surface is asked for one point at a time, as the four may be at different platens. */
         double n[3];
         if (!brc_platen_height(platen, sim->bodies.x[body[k]], x, &height[k], n))
             height[k] = HUGE_VAL; /* beyond a sharp edge */

@@ -10,9 +10,9 @@
 /* --- geometry --------------------------------------------------------------------------------- */
 
 /* Distance s and outward normal n of v from planes. */
-BRC_LANES_INLINE void distance_to_planes(brc_lanes *s, brc_lanes n[3],
-                                         const struct poly_batch *batch, const brc_lanes v[3],
-                                         const int32_t *const item[])
+BRC_LANES_INLINE void poly_distance_to_planes(brc_lanes *s, brc_lanes n[3],
+                                              const struct poly_batch *batch, const brc_lanes v[3],
+                                              const int32_t *const item[])
 {
     const double *plane[BRC_LANES];
     brc_lanes p[BRC_LANES];
@@ -24,9 +24,9 @@ BRC_LANES_INLINE void distance_to_planes(brc_lanes *s, brc_lanes n[3],
 }
 
 /* Distance s and outward normal n of v from edges or vertices. */
-BRC_LANES_INLINE void distance_to_edges(brc_lanes *s, brc_lanes n[3],
-                                        const struct poly_batch *batch, const brc_lanes v[3],
-                                        const int32_t *const item[])
+BRC_LANES_INLINE void poly_distance_to_edges(brc_lanes *s, brc_lanes n[3],
+                                             const struct poly_batch *batch, const brc_lanes v[3],
+                                             const int32_t *const item[])
 {
     double(*vertices)[3] = batch->st->global_vertices;
     int32_t i[2][BRC_LANES];
@@ -47,7 +47,7 @@ BRC_LANES_INLINE void distance_to_edges(brc_lanes *s, brc_lanes n[3],
 }
 
 /* Number of vertex i of the other core that may lower the weight, or -1. */
-BRC_LANES_INLINE int32_t near_vertex(const int32_t *item, int32_t i)
+BRC_LANES_INLINE int32_t poly_near_vertex(const int32_t *item, int32_t i)
 {
     const int32_t *near = item + POLY_ITEM_NEAR;
     if (i >= item[POLY_ITEM_LIST] >> POLY_NEAR_SHIFT)
@@ -56,9 +56,9 @@ BRC_LANES_INLINE int32_t near_vertex(const int32_t *item, int32_t i)
 }
 
 /* Near vertices of the other core lower the weights of vertices v. */
-BRC_LANES_INLINE void fade_vertices(struct poly_geometry4 *t, const struct poly_batch *batch,
-                                    const brc_lanes v[3], brc_lanes sign,
-                                    const int32_t *const item[], int32_t n_near)
+BRC_LANES_INLINE void poly_fade_vertices(struct poly_geometry4 *t, const struct poly_batch *batch,
+                                         const brc_lanes v[3], brc_lanes sign,
+                                         const int32_t *const item[], int32_t n_near)
 {
     struct poly_fading f;
     poly_fading_begin(&f);
@@ -67,7 +67,7 @@ BRC_LANES_INLINE void fade_vertices(struct poly_geometry4 *t, const struct poly_
         brc_mask is_near;
         brc_lanes r[3];
         for (int k = 0; k < BRC_LANES; k++) {
-            u[k] = near_vertex(item[k], i);
+            u[k] = poly_near_vertex(item[k], i);
             is_near[k] = u[k] < 0 ? 0 : -1;
             u[k] = u[k] < 0 ? item[k][POLY_ITEM_VERTEX] : u[k];
         }
@@ -78,8 +78,9 @@ BRC_LANES_INLINE void fade_vertices(struct poly_geometry4 *t, const struct poly_
     poly_weigh_vertex(t, v, sign, &f);
 }
 
-BRC_LANES_INLINE void vertices_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
-                                        const struct poly_task *task, const bool flat)
+BRC_LANES_INLINE void poly_vertices_of_tasks(struct poly_geometry4 *t,
+                                             const struct poly_batch *batch,
+                                             const struct poly_task *task, const bool flat)
 {
     const struct poly_points *points = batch->contacts->point_columns;
     const int32_t *item[BRC_LANES];
@@ -95,17 +96,17 @@ BRC_LANES_INLINE void vertices_of_tasks(struct poly_geometry4 *t, const struct p
     }
     brc_lanes_gather3(v, batch->st->global_vertices, vertex);
     if (flat)
-        distance_to_planes(&s, out, batch, v, item);
+        poly_distance_to_planes(&s, out, batch, v, item);
     else
-        distance_to_edges(&s, out, batch, v, item);
+        poly_distance_to_edges(&s, out, batch, v, item);
     brc_mask touches = poly_vertex_geometry(t, v, s, out, sign, batch->len.contact_distance);
     if (n_near > 0)
-        fade_vertices(t, batch, v, sign, item, n_near);
+        poly_fade_vertices(t, batch, v, sign, item, n_near);
     poly_hide_apart(t, touches);
 }
 
-BRC_LANES_INLINE void edges_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
-                                     const struct poly_task *task, const enum poly_rule rule)
+BRC_LANES_INLINE void poly_edges_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
+                                          const struct poly_task *task, const enum poly_rule rule)
 {
     struct poly_points *points = batch->contacts->point_columns;
     int32_t end[4][BRC_LANES], *item[BRC_LANES];
@@ -128,15 +129,17 @@ BRC_LANES_INLINE void edges_of_tasks(struct poly_geometry4 *t, const struct poly
     }
 }
 
-/* Vertices at platens; those of the row that nobody reads are taken along with the batch's first.
+/* Vertices at platens; those of the contact that nobody reads are taken along with the batch's
+ * first.
  */
-BRC_LANES_INLINE void platens_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
-                                       const struct poly_task *task)
+BRC_LANES_INLINE void poly_platens_of_tasks(struct poly_geometry4 *t,
+                                            const struct poly_batch *batch,
+                                            const struct poly_task *task)
 {
     size_t vertex[BRC_LANES];
     int32_t platen[BRC_LANES];
     for (int k = 0; k < BRC_LANES; k++) {
-        int32_t row = task[k].row < batch->n_rows ? task[k].row : 0;
+        int32_t row = task[k].row < batch->n_contacts ? task[k].row : 0;
         vertex[k] = poly_platen_vertex(batch->sim, batch->st, (size_t)batch->row[row],
                                        (size_t)task[k].point);
         platen[k] = batch->b[row];
@@ -146,10 +149,10 @@ BRC_LANES_INLINE void platens_of_tasks(struct poly_geometry4 *t, const struct po
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
-/* Adds the stiffness of four points to the tangents of their rows. */
-BRC_LANES_INLINE void add_tangents(struct poly_batch *batch, const int32_t row[BRC_LANES],
-                                   const struct poly_geometry4 *t, const brc_lanes xi[3],
-                                   brc_mask slips, const brc_lanes arm[3], const bool friction)
+/* Adds the stiffness of four points to the tangents of their contacts. */
+BRC_LANES_INLINE void poly_add_tangents(struct poly_batch *batch, const int32_t row[BRC_LANES],
+                                        const struct poly_geometry4 *t, const brc_lanes xi[3],
+                                        brc_mask slips, const brc_lanes arm[3], const bool friction)
 {
     brc_lanes a[3][3], q[3], k[36], force[3], moment[3];
     poly_spring_stiffness(a, q, &batch->law, t, xi, slips, friction);
@@ -175,10 +178,10 @@ BRC_LANES_INLINE void add_tangents(struct poly_batch *batch, const int32_t row[B
             batch->valid_path[row[i]] = poly_least(batch->valid_path[row[i]], t->valid_path[i]);
 }
 
-/* Adds the lanes to the sums of their rows, one after the other: the points of a row are summed in
- * the order of the lists. */
-BRC_LANES_INLINE void add_sums(struct poly_batch *batch, const int32_t row[BRC_LANES],
-                               brc_lanes *sums, int end)
+/* Adds the lanes to the sums of their contacts, one after the other: the points of a contact are
+ * summed in the order of the lists. */
+BRC_LANES_INLINE void poly_add_sums(struct poly_batch *batch, const int32_t row[BRC_LANES],
+                                    brc_lanes *sums, int end)
 {
     for (int k = 0; k < end; k += BRC_LANES) {
         brc_lanes_transpose(sums + k);
@@ -190,11 +193,10 @@ BRC_LANES_INLINE void add_sums(struct poly_batch *batch, const int32_t row[BRC_L
 }
 
 /* Forces of four points, which touch or are apart. Returns where they slip. */
-BRC_LANES_INLINE brc_mask forces_of_points(const struct poly_batch *batch, struct poly_sums4 *s,
-                                           const struct poly_geometry4 *t, const struct frames *row,
-                                           struct poly_springs4 *springs, const brc_lanes arm[3],
-                                           const bool linearised, const bool friction,
-                                           const bool viscous, const bool ledger)
+BRC_LANES_INLINE brc_mask poly_forces_of_points(
+    const struct poly_batch *batch, struct poly_sums4 *s, const struct poly_geometry4 *t,
+    const struct poly_frame4 *row, struct poly_springs4 *springs, const brc_lanes arm[3],
+    const bool linearised, const bool friction, const bool viscous, const bool ledger)
 {
     const struct poly_spring_law *law = &batch->law;
     brc_lanes back[3], u[3], old = springs->weight, stiff = brc_lanes_all(law->kn);
@@ -210,7 +212,7 @@ BRC_LANES_INLINE brc_mask forces_of_points(const struct poly_batch *batch, struc
     s->k[2] = stiff * brc_lanes_dot(back, back);
     s->stored = s->slid = brc_lanes_all(0);
     if (friction || viscous)
-        slip_at(u, row, arm);
+        poly_slip_at(u, row, arm);
     if (friction) {
         const brc_lanes turn[3] = {row->along[0].turn, row->along[1].turn, row->along[2].turn};
         struct poly_slip4 slip = {.twirl = brc_lanes_dot(turn, t->n), .limit = row->limit};
@@ -231,8 +233,8 @@ BRC_LANES_INLINE brc_mask forces_of_points(const struct poly_batch *batch, struc
 }
 
 /* Points that begin to touch, and those that are apart. */
-BRC_LANES_INLINE void note_changes(struct poly_batch *batch, const struct poly_task *task,
-                                   int32_t n, const struct poly_geometry4 *t, brc_lanes old)
+BRC_LANES_INLINE void poly_find_changes(struct poly_batch *batch, const struct poly_task *task,
+                                        int32_t n, const struct poly_geometry4 *t, brc_lanes old)
 {
     struct poly_points *points = batch->contacts->point_columns;
     brc_mask touches = poly_positive(t->weight), taken = brc_lanes_first(n);
@@ -250,15 +252,15 @@ BRC_LANES_INLINE void note_changes(struct poly_batch *batch, const struct poly_t
 }
 
 /* Forces of the four points from task on, of which the first n count. */
-BRC_LANES_INLINE void act_of_points(struct poly_batch *batch, const struct poly_task *task,
-                                    int32_t n, const struct poly_geometry4 *t,
-                                    const bool linearised, const bool friction, const bool viscous,
-                                    const bool ledger)
+BRC_LANES_INLINE void poly_act_on_points(struct poly_batch *batch, const struct poly_task *task,
+                                         int32_t n, const struct poly_geometry4 *t,
+                                         const bool linearised, const bool friction,
+                                         const bool viscous, const bool ledger)
 {
     const struct poly_points *points = batch->contacts->point_columns;
     const double *frame[BRC_LANES], *from[BRC_LANES];
     int32_t row[BRC_LANES];
-    struct frames f;
+    struct poly_frame4 f;
     struct poly_springs4 springs;
     struct poly_sums4 s;
     for (int k = 0; k < BRC_LANES; k++) {
@@ -266,16 +268,16 @@ BRC_LANES_INLINE void act_of_points(struct poly_batch *batch, const struct poly_
         frame[k] = batch->frame[row[k]];
         from[k] = points->spring[task[k].point];
     }
-    gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
-    gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
+    poly_gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
+    poly_gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
     brc_lanes arm[3], old = springs.weight;
     poly_sub3(arm, t->x, f.xa);
-    brc_mask slips =
-        forces_of_points(batch, &s, t, &f, &springs, arm, linearised, friction, viscous, ledger);
-    note_changes(batch, task, n, t, old);
+    brc_mask slips = poly_forces_of_points(batch, &s, t, &f, &springs, arm, linearised, friction,
+                                           viscous, ledger);
+    poly_find_changes(batch, task, n, t, old);
     const bool *wanted = batch->will_linearise;
     if (linearised && (wanted[row[0]] | wanted[row[1]] | wanted[row[2]] | wanted[row[3]]))
-        add_tangents(batch, row, t, springs.xi, slips, arm, friction);
+        poly_add_tangents(batch, row, t, springs.xi, slips, arm, friction);
     brc_lanes *part = (brc_lanes *)&springs;
     brc_lanes_transpose(part);
     brc_lanes_transpose(part + BRC_LANES);
@@ -286,60 +288,61 @@ BRC_LANES_INLINE void act_of_points(struct poly_batch *batch, const struct poly_
             poly_least(batch->nearest[row[k]], t->weight[k] > 0 ? -t->delta[k] : HUGE_VAL);
     }
     s.none = brc_lanes_all(0);
-    add_sums(batch, row, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
+    poly_add_sums(batch, row, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
 }
 
-/* Ends a list at a whole group: what is left over goes to a row that nobody reads. Returns its
+/* Ends a list at a whole group: what is left over goes to a contact that nobody reads. Returns its
  * number of tasks; the list is empty then. */
-BRC_LANES_INLINE int32_t end_list(struct poly_batch *batch, int list)
+BRC_LANES_INLINE int32_t poly_end_list(struct poly_batch *batch, int list)
 {
     struct poly_task *task = batch->task[list];
     int32_t n = batch->n_tasks[list];
     for (int32_t k = n; k % BRC_LANES != 0; k++)
-        task[k] = (struct poly_task){POLY_ROWS, task[n - 1].point};
+        task[k] = (struct poly_task){POLY_CONTACTS, task[n - 1].point};
     batch->n_tasks[list] = 0;
     return n;
 }
 
-BRC_LANES_INLINE void points_of_list(struct poly_batch *batch, const int list,
-                                     const enum poly_rule rule, const bool linearised,
-                                     const bool friction, const bool viscous, const bool ledger)
+BRC_LANES_INLINE void poly_points_of_list(struct poly_batch *batch, const int list,
+                                          const enum poly_rule rule, const bool linearised,
+                                          const bool friction, const bool viscous,
+                                          const bool ledger)
 {
     const struct poly_task *task = batch->task[list];
-    int32_t n = end_list(batch, list);
+    int32_t n = poly_end_list(batch, list);
     for (int32_t k = 0; k < n; k += BRC_LANES) {
         struct poly_geometry4 t;
         if (list == POLY_KNOWN)
             t = batch->known[k / BRC_LANES];
         else if (list == POLY_CROSSING)
-            edges_of_tasks(&t, batch, task + k, rule);
+            poly_edges_of_tasks(&t, batch, task + k, rule);
         else
-            vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT);
-        act_of_points(batch, task + k, n - k, &t, linearised, friction, viscous, ledger);
+            poly_vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT);
+        poly_act_on_points(batch, task + k, n - k, &t, linearised, friction, viscous, ledger);
     }
 }
 
-BRC_LANES_INLINE void points_kernel(struct poly_batch *batch, const enum poly_rule rule,
-                                    const bool linearised, const bool friction, const bool viscous,
-                                    const bool ledger)
+BRC_LANES_INLINE void poly_points_kernel(struct poly_batch *batch, const enum poly_rule rule,
+                                         const bool linearised, const bool friction,
+                                         const bool viscous, const bool ledger)
 {
-    points_of_list(batch, POLY_FLAT, rule, linearised, friction, viscous, ledger);
+    poly_points_of_list(batch, POLY_FLAT, rule, linearised, friction, viscous, ledger);
     if (rule == POLY_MERGED)
-        points_of_list(batch, POLY_SHARP, rule, linearised, friction, viscous, ledger);
-    points_of_list(batch, POLY_CROSSING, rule, linearised, friction, viscous, ledger);
-    points_of_list(batch, POLY_KNOWN, rule, linearised, friction, viscous, ledger);
+        poly_points_of_list(batch, POLY_SHARP, rule, linearised, friction, viscous, ledger);
+    poly_points_of_list(batch, POLY_CROSSING, rule, linearised, friction, viscous, ledger);
+    poly_points_of_list(batch, POLY_KNOWN, rule, linearised, friction, viscous, ledger);
 }
 
 /* Points of platens, whose friction is that of each contact. */
-BRC_LANES_INLINE void platens_kernel(struct poly_batch *batch, const bool viscous,
-                                     const bool ledger)
+BRC_LANES_INLINE void poly_platens_kernel(struct poly_batch *batch, const bool viscous,
+                                          const bool ledger)
 {
     const struct poly_task *task = batch->task[POLY_FLAT];
-    int32_t n = end_list(batch, POLY_FLAT);
+    int32_t n = poly_end_list(batch, POLY_FLAT);
     for (int32_t k = 0; k < n; k += BRC_LANES) {
         struct poly_geometry4 t;
-        platens_of_tasks(&t, batch, task + k);
-        act_of_points(batch, task + k, n - k, &t, false, true, viscous, ledger);
+        poly_platens_of_tasks(&t, batch, task + k);
+        poly_act_on_points(batch, task + k, n - k, &t, false, true, viscous, ledger);
     }
 }
 

@@ -7,14 +7,14 @@
 
 /* A point that has come apart stays awake while its gap is less than this many steps' path: to
  * look at it again costs as much as it does for that long. */
-static const double DOZE = 4;
+static const double DOZE_STEPS = 4;
 
 /* Row i of the batch as the literal functions want it. */
 static const struct poly_pair *pair_of(struct poly_batch *batch, int32_t i)
 {
-    if (batch->pair_row != batch->row[i])
+    if (batch->pair_of_row != batch->row[i])
         poly_pair_of(&batch->pair, batch->sim, batch->st, batch->a[i], batch->b[i]);
-    batch->pair_row = batch->row[i];
+    batch->pair_of_row = batch->row[i];
     return &batch->pair;
 }
 
@@ -51,7 +51,7 @@ static void add_known(struct poly_batch *batch, int32_t i, size_t p, bool touche
  * then it belongs in the list of that feature. */
 static bool find_literally(struct poly_batch *batch, int32_t i, size_t p)
 {
-    const struct poly_rows *rows = batch->contacts->model_columns;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
     struct poly_points *points = batch->contacts->point_columns;
     struct poly_feature f = poly_point(points, p);
     struct poly_geometry t;
@@ -61,7 +61,7 @@ static bool find_literally(struct poly_batch *batch, int32_t i, size_t p)
     points->i[p] = f.i;
     points->j[p] = f.j;
     if (f.kind != POLY_EDGES) {
-        points->feature_valid_to[p] = rows->skin_left[batch->row[i]] - margin;
+        points->feature_valid_to[p] = columns->skin_left[batch->row[i]] - margin;
         if (margin > 0)
             return true;
     }
@@ -149,8 +149,8 @@ static void list_items(struct poly_batch *batch, const struct poly_points *point
 }
 
 /* Gives a point its item and lists it. What is computed where depends on the pose alone, not on
- * what is remembered. Returns the room above which the item stays right. */
-static double list_point(struct poly_batch *batch, int32_t i, size_t p, double room)
+ * what is remembered. Returns the skin left above which the item stays right. */
+static double list_point(struct poly_batch *batch, int32_t i, size_t p, double skin_left)
 {
     const struct poly_points *points = batch->contacts->point_columns;
     enum poly_rule rule = rule_of(batch);
@@ -165,7 +165,7 @@ static double list_point(struct poly_batch *batch, int32_t i, size_t p, double r
         find_literally(batch, i, p);
         return HUGE_VAL;
     }
-    if (room > points->feature_valid_to[p]) {
+    if (skin_left > points->feature_valid_to[p]) {
         if (!is_set)
             set_vertex(batch, i, p, rule == POLY_MERGED);
         list_items(batch, points, i, p, 1);
@@ -188,11 +188,11 @@ static void release_spring(struct poly_batch *batch, int32_t i, size_t p)
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
     double *xi = poly_xi(points, p), part = 0.5 * batch->law.kt * *poly_weight(points, p), du[3];
     if (BRC_OPTION(sim->run.ledger)) {
-        struct frames f;
+        struct poly_frame4 f;
         brc_lanes u[3], middle[3];
-        slip_of_row(&f, g, sim->dt);
+        poly_slip_of_four(&f, g, sim->dt);
         poly_scale3(middle, g->x, brc_lanes_all(0.5));
-        slip_at(u, &f, middle);
+        poly_slip_at(u, &f, middle);
         poly_lane3(du, u, i % BRC_LANES);
         double stored = part * brc_norm2(xi), work = part * sim->dt * brc_dot(xi, du);
         sim->ledger.contact_shear -= stored;
@@ -209,7 +209,7 @@ static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
 {
     int32_t i = apart->row;
     size_t p = (size_t)apart->point;
-    const struct poly_rows *rows = batch->contacts->model_columns;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
     struct poly_points *points = batch->contacts->point_columns;
     size_t row = (size_t)batch->row[i];
     if (*poly_weight(points, p) > 0)
@@ -222,9 +222,9 @@ static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
         points->item[p][POLY_ITEM_SIDE] = 0;
         points->feature_valid_to[p] = apart->fades ? POLY_FADES : HUGE_VAL;
     }
-    if (apart->path < DOZE * batch->four[i / BRC_LANES].path[i % BRC_LANES])
+    if (apart->path < DOZE_STEPS * batch->four[i / BRC_LANES].path[i % BRC_LANES])
         return;
-    poly_sleep_point(batch->contacts, row, p, rows->skin_left[row] - apart->path);
+    poly_sleep_point(batch->contacts, row, p, columns->skin_left[row] - apart->path);
 }
 
 /* The last point first. */
@@ -239,6 +239,7 @@ void poly_work_off(struct poly_batch *batch)
 {
     batch->n_apart = 0;
     batch->loop->points(batch);
+    /* From the last one on, for a point that goes to sleep moves those behind it. */
     if (batch->n_apart > 1)
         qsort(batch->apart, (size_t)batch->n_apart, sizeof *batch->apart, compare_apart);
     for (int32_t i = 0; i < batch->n_apart; i++)
@@ -246,20 +247,20 @@ void poly_work_off(struct poly_batch *batch)
     batch->n_points = 0;
 }
 
-/* Lists points p to p + n of row i of the batch; returns the room above which their items stay
- * right. */
+/* Lists points p to p + n of contact i of the batch; returns the skin left above which their items
+ * stay right. */
 static double list_part(struct poly_batch *batch, int32_t i, size_t p, size_t n)
 {
     const struct poly_points *points = batch->contacts->point_columns;
-    const struct poly_rows *rows = batch->contacts->model_columns;
-    double room = rows->skin_left[batch->row[i]], calm = 0;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
+    double skin_left = columns->skin_left[batch->row[i]], stable_above = 0;
     batch->n_points += (int32_t)n;
     if (batch->is_stable[i])
         list_items(batch, points, i, p, n);
     else
         for (size_t q = p; q < p + n; q++)
-            calm = poly_most(calm, list_point(batch, i, q, room));
-    return calm;
+            stable_above = poly_most(stable_above, list_point(batch, i, q, skin_left));
+    return stable_above;
 }
 
 /* All points of a contact with a platen: none sleeps, as they are few and cheap. */
@@ -276,12 +277,12 @@ static void list_at_platen(struct poly_batch *batch, int32_t i)
     }
 }
 
-/* Lists the points of row i of the batch that may touch. A row is never split, unless it fills the
- * lists by itself: its sums do not depend on the rows around it. */
+/* Lists the points of contact i of the batch that may touch. A contact is never split, unless it
+ * fills the lists by itself: its sums do not depend on the contacts around it. */
 void poly_list_points(struct poly_batch *batch, int32_t i)
 {
     const struct brc_contacts *c = batch->contacts;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     const struct poly_points *points = c->point_columns;
     size_t row = (size_t)batch->row[i], p = (size_t)c->p0[row], n;
     if (batch->is_platens) {
@@ -290,19 +291,19 @@ void poly_list_points(struct poly_batch *batch, int32_t i)
     }
     if (!batch->is_stable[i])
         poly_wake_points(batch->contacts, row, rule_of(batch) == POLY_MERGED);
-    n = (size_t)rows->awake[row];
-    double calm = !batch->is_stable[i] && n < (size_t)c->np[row] ? points->sleep[p + n] : 0;
-    rows->ready[row] = n <= POLY_TASKS;
+    n = (size_t)columns->awake[row];
+    double stable_above = !batch->is_stable[i] && n < (size_t)c->np[row] ? points->sleep[p + n] : 0;
+    columns->ready[row] = n <= POLY_TASKS;
     if ((size_t)batch->n_points + n > POLY_TASKS)
         poly_work_off(batch);
     /* parts from the last one on: those that are still to come do not move (poly_work_off) */
     while (n > 0) {
         size_t part = n % POLY_TASKS > 0 ? n % POLY_TASKS : POLY_TASKS;
         n -= part;
-        calm = poly_most(calm, list_part(batch, i, p + n, part));
+        stable_above = poly_most(stable_above, list_part(batch, i, p + n, part));
         if (n > 0)
             poly_work_off(batch);
     }
     if (!batch->is_stable[i])
-        rows->stable_above[row] = poly_most(calm, 0);
+        columns->stable_above[row] = poly_most(stable_above, 0);
 }

@@ -78,7 +78,7 @@ struct poly_params {
 
 /* Contact fields. Tables of work hold force and moment about a of the last step, for the trapezoid
  * rule of ledger.h; they are written only while the ledger is on. */
-#define POLY_ROW_FIELDS(SCALAR, VECTOR, RENAMED, RENAMED3)                                       \
+#define POLY_CONTACT_FIELDS(SCALAR, VECTOR, RENAMED, RENAMED3)                                   \
     RENAMED(double, rebuild_at, wake, BRC_STATE, "m",                                            \
             "no features listed: path of a and b to list anew")                                  \
     RENAMED(double, skin_left, room, BRC_STATE, "m",                                             \
@@ -99,21 +99,21 @@ struct poly_params {
            "the same of the normal springs; linearised: of all springs and the bond")            \
     VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m", "the same of the viscous forces")
 
-struct poly_rows {
-    POLY_ROW_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED, BRC_COLUMN3_RENAMED)
+struct poly_contacts {
+    POLY_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED, BRC_COLUMN3_RENAMED)
 };
 
-static inline double *poly_bond_area(const struct poly_rows *rows, size_t row)
+static inline double *poly_bond_area(const struct poly_contacts *columns, size_t row)
 {
-    return rows->bond[row] + POLY_BOND_AREA;
+    return columns->bond[row] + POLY_BOND_AREA;
 }
 
-static inline double *poly_bond_length(const struct poly_rows *rows, size_t row)
+static inline double *poly_bond_length(const struct poly_contacts *columns, size_t row)
 {
-    return rows->bond[row] + POLY_BOND_LENGTH;
+    return columns->bond[row] + POLY_BOND_LENGTH;
 }
 
-/* Points: feature pairs near enough to touch before the row is listed anew. */
+/* Points: feature pairs near enough to touch before the contact is listed anew. */
 #define POLY_POINT_FIELDS(SCALAR, VECTOR, RENAMED)                                         \
     SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")         \
     SCALAR(uint8_t, active, BRC_STATE, "1",                                                \
@@ -214,29 +214,31 @@ void poly_scale_params(const struct poly_scale *scale, struct poly_params *param
 
 /* bonding.c: initial bonds. contact_points.c: contacts from the neighbour list, their points. */
 int poly_open_bonds(struct brc_sim *sim, void *state);
-int poly_update_rows(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
-                     const struct brc_neighbours *platens);
-/* Lists the features of a row of pairs, or of platens. */
-int poly_list_row(struct brc_sim *sim, struct poly_state *st, size_t row);
+int poly_update_contacts(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                         const struct brc_neighbours *platens);
+/* Lists the features of a contact of pairs, or of platens. */
+int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t row);
 int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row);
-/* The points of a row that are awake come first, sorted by feature; then those that sleep, sorted
- * by when they wake up. Brings in those that the row's room wakes. */
+/* The points of a contact that are awake come first, sorted by feature; then those that sleep,
+ * sorted by when they wake up. Brings in those that its skin left wakes. */
 void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
-/* A point that is awake and does not touch sleeps until its row has no more than `sleep` room. */
+/* A point that is awake and does not touch sleeps until its contact has no more skin left than
+ * `sleep`. */
 void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
 
-/* points.c: lists the points of row i of the batch that may touch; computes all that is listed. */
+/* points.c: lists the points of contact i of the batch that may touch; computes all that is listed.
+ */
 void poly_list_points(struct poly_batch *batch, int32_t i);
 void poly_work_off(struct poly_batch *batch);
 
-/* linearise.c. Decides whether row i of the batch may be linearised: then its tangent is found with
- * its forces. */
+/* linearise.c. Decides whether contact i of the batch may be linearised: then its tangent is found
+ * with its forces. */
 void poly_begin_tangent(struct poly_batch *batch, int32_t i);
-/* A row that has been computed literally, and whose springs all touch, is linearised until it has
- * moved by the path for which they stay what they are. */
+/* A contact that has been computed literally, and whose springs all touch, is linearised until it
+ * has moved by the path for which they stay what they are. */
 void poly_linearise(struct poly_batch *batch, int32_t i);
-/* Where rows may be linearised, the works of bonds are not booked by themselves: what the bond of a
- * row has gained since it was computed last is part of the work of all that acts. */
+/* Where contacts may be linearised, the works of bonds are not booked by themselves: what the bond
+ * of a contact has gained since it was computed last is part of the work of all that acts. */
 void poly_account_bond(struct brc_sim *sim, size_t row, double stored);
 
 /* forces.c: the loops. */
@@ -261,7 +263,7 @@ int poly_bond_mode(const struct poly_bond *bond);
 /* energy.c, springs.c: stored energy and springs, from state alone. */
 void poly_energy(const struct brc_sim *sim, const void *state, double stored[3]);
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
-/* Dynamic regime: the step bears that all listed features of a row close at once. */
+/* Dynamic regime: the step bears that all listed features of a contact close at once. */
 int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_platen);
 
 /* pose.c. Rotation matrices, core vertices and planes in space for the present poses. */

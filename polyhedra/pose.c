@@ -9,6 +9,7 @@ void poly_pose_bodies(const struct brc_sim *sim, const struct poly_state *st)
     st->kernels.pose(sim, st);
 }
 
+/* A view, nothing is copied: it is made for each pair that is looked at literally. */
 void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct poly_state *st,
                   int32_t a, int32_t b)
 {

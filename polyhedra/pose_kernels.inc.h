@@ -6,47 +6,48 @@
 #include "polyhedra/poly.h"
 
 /* Pose of a body, the same in all lanes: rotation matrix and centre. */
-struct pose {
+struct poly_body_pose4 {
     brc_lanes r[9], x[3];
 };
 
 /* Four vectors of body frames in space. */
-BRC_LANES_INLINE void body_to_space(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
+BRC_LANES_INLINE void poly_to_space4(brc_lanes out[3], const brc_lanes r[9], const brc_lanes v[3])
 {
     poly_set3(out, brc_lanes_dot(r, v), brc_lanes_dot(r + 3, v), brc_lanes_dot(r + 6, v));
 }
 
 /* Where the four of a range that begin at i are: the last ones are the last four once more. A core
  * has four vertices and faces at least. */
-BRC_LANES_INLINE size_t whole_four(size_t i, size_t end)
+BRC_LANES_INLINE size_t poly_whole_four(size_t i, size_t end)
 {
     return i + BRC_LANES <= end ? i : end - BRC_LANES;
 }
 
-BRC_LANES_INLINE void place_vertices(const struct poly_state *st, const struct pose *pose,
-                                     size_t first, size_t end)
+BRC_LANES_INLINE void poly_pose_vertices(const struct poly_state *st,
+                                         const struct poly_body_pose4 *pose, size_t first,
+                                         size_t end)
 {
     for (size_t i = first; i < end; i += BRC_LANES) {
-        size_t at = whole_four(i, end);
+        size_t at = poly_whole_four(i, end);
         brc_lanes v[3];
         brc_lanes_at3(v, st->shapes.vertex + at);
-        body_to_space(v, pose->r, v);
+        poly_to_space4(v, pose->r, v);
         poly_add3(v, pose->x, v);
         brc_lanes_put3(st->global_vertices + at, v);
     }
 }
 
-BRC_LANES_INLINE void place_planes(const struct poly_state *st, const struct pose *pose,
-                                   size_t first, size_t end)
+BRC_LANES_INLINE void poly_pose_planes(const struct poly_state *st,
+                                       const struct poly_body_pose4 *pose, size_t first, size_t end)
 {
     for (size_t i = first; i < end; i += BRC_LANES) {
-        size_t at = whole_four(i, end);
+        size_t at = poly_whole_four(i, end);
         const double *from[BRC_LANES];
         brc_lanes p[BRC_LANES];
         for (size_t k = 0; k < BRC_LANES; k++)
             from[k] = (const double *)(st->shapes.face + at + k); /* n, d */
         brc_lanes_gather4(p, from);
-        body_to_space(p, pose->r, p);
+        poly_to_space4(p, pose->r, p);
         p[3] = brc_lanes_dot(p, pose->x) + p[3];
         brc_lanes_transpose(p);
         for (size_t k = 0; k < BRC_LANES; k++)
@@ -54,18 +55,20 @@ BRC_LANES_INLINE void place_planes(const struct poly_state *st, const struct pos
     }
 }
 
-BRC_LANES_INLINE void place_cores(const struct brc_sim *sim, const struct poly_state *st)
+/* All vertices and planes of all grains at each step: each serves several contacts, and memory
+ * is read in order. */
+BRC_LANES_INLINE void poly_pose_cores(const struct brc_sim *sim, const struct poly_state *st)
 {
     const struct brc_bodies *b = &sim->bodies;
     const struct poly_shapes *s = &st->shapes;
     for (size_t i = 0; i < b->n_grains; i++) {
-        struct pose pose;
+        struct poly_body_pose4 pose;
         for (int k = 0; k < 9; k++)
             pose.r[k] = brc_lanes_all(st->rotation[i][k / 3][k % 3]);
         for (int k = 0; k < 3; k++)
             pose.x[k] = brc_lanes_all(b->x[i][k]);
-        place_vertices(st, &pose, s->vertex_first[i], s->vertex_first[i + 1]);
-        place_planes(st, &pose, s->face_first[i], s->face_first[i + 1]);
+        poly_pose_vertices(st, &pose, s->vertex_first[i], s->vertex_first[i + 1]);
+        poly_pose_planes(st, &pose, s->face_first[i], s->face_first[i + 1]);
     }
 }
 

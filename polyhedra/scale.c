@@ -25,6 +25,8 @@ void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facet
     scale->distance = n > 0 ? distance / (double)n : scale->size;
 }
 
+/* What is given stays. K_n goes with area over distance, as the stiffness of a block of rock
+ * between two centres does, so that a specimen of other grains has the same modulus. */
 void poly_scale_params(const struct poly_scale *scale, struct poly_params *params)
 {
     if (isnan(params->radius))

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cores from loops of vertices. Called once for each grain as a run starts, so that it searches
+ * where an index would do: cores have some tens of edges. */
 #include "polyhedra/shape.h"
 
 #include "common/geometry/vec.h"

@@ -10,7 +10,8 @@
 /* What every step reads is kept apart from what only lists and walks read: it must stay in cache.
  */
 
-/* A directed side of a face: a point whose foot on the face's plane is inside it has m . x < off.
+/* A directed side of a face: a point whose closest point on the face's plane is inside it has m . x
+ * < off.
  */
 struct poly_side {
     double m[3]; /* unit, in the plane of the face, outward */

@@ -6,6 +6,7 @@
 /* Faces that are bonded are this near to each other, in radii R. */
 static const double FACE_SKIN = 1e-3;
 
+/* Collected for one call; the first error stays and ends it. */
 struct springs {
     const struct brc_sim *sim;
     struct brc_springs *out;
@@ -33,7 +34,7 @@ static void add_touch(struct springs *s, int32_t a, int32_t b, const struct poly
     add_spring(s, a, b, t->x, &spring);
 }
 
-/* Those of rows without an intact bond; add_listed has the others. */
+/* Those of contacts without an intact bond; add_listed has the others. */
 static void add_active_spring(void *user, const struct poly_active *active)
 {
     struct springs *s = user;
@@ -41,8 +42,8 @@ static void add_active_spring(void *user, const struct poly_active *active)
         add_touch(s, active->a, active->b, &active->geometry, poly_params_of(s->sim)->mu, false);
 }
 
-/* Features of a row that may close in the same step, as when faces meet. Their springs are those
- * that a distance without contact larger by `skin` would give. */
+/* Features of a contact that may close in the same step, as when faces meet. Their springs are
+ * those that a distance without contact larger by `skin` would give. */
 static void add_listed(struct springs *s, const struct poly_state *st, size_t row, double skin,
                        bool is_near)
 {
@@ -140,7 +141,7 @@ static bool touches(const struct brc_contacts *c, size_t row)
     return false;
 }
 
-static void add_near_row(struct springs *s, const struct poly_state *st, size_t row)
+static void add_near_contact(struct springs *s, const struct poly_state *st, size_t row)
 {
     size_t n = s->out->n;
     if (touches(&s->sim->pairs, row))
@@ -151,11 +152,11 @@ static void add_near_row(struct springs *s, const struct poly_state *st, size_t 
 }
 
 /* The faces of a bond touch, but for rounding: all that they have may close with the first load. */
-static void add_row(struct springs *s, const struct poly_state *st, size_t row)
+static void add_contact(struct springs *s, const struct poly_state *st, size_t row)
 {
     const struct brc_contacts *c = &s->sim->pairs;
     if (c->status[row] != BRC_INTACT) {
-        add_near_row(s, st, row);
+        add_near_contact(s, st, row);
         return;
     }
     add_bond(s, st, c, row);
@@ -182,7 +183,7 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
     struct springs s = springs_of(sim, out);
     poly_each_active(sim, st, add_active_spring, &s);
     for (size_t row = 0; row < sim->pairs.n; row++)
-        add_row(&s, st, row);
+        add_contact(&s, st, row);
     for (size_t row = 0; row < sim->platens.n; row++)
         add_platen(&s, st, row);
     return s.code;

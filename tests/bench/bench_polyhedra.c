@@ -180,32 +180,32 @@ static void breaking(struct brc_context *ctx, const struct brc_specimen *specime
 /* --- list work -------------------------------------------------------------------------------- */
 
 /* Rows before a step, and when each would be listed anew. */
-struct old_rows {
+struct old_contacts {
     int32_t (*pair)[2];
     double *wake;
     size_t n;
 };
 
-static void remember(struct old_rows *old, const struct brc_sim *sim)
+static void remember(struct old_contacts *old, const struct brc_sim *sim)
 {
     const struct brc_contacts *c = &sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     free(old->pair);
     free(old->wake);
     *old =
-        (struct old_rows){malloc(c->n * sizeof *old->pair), malloc(c->n * sizeof *old->wake), c->n};
+        (struct old_contacts){malloc(c->n * sizeof *old->pair), malloc(c->n * sizeof *old->wake), c->n};
     for (size_t i = 0; i < c->n; i++) {
         old->pair[i][0] = c->a[i];
         old->pair[i][1] = c->b[i];
-        old->wake[i] = rows->rebuild_at[i];
+        old->wake[i] = columns->rebuild_at[i];
     }
 }
 
 /* Makes the lists of the step that has been made once more; returns how long that takes. */
-static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool candidates)
+static double list_seconds(struct brc_sim *sim, const struct old_contacts *old, bool candidates)
 {
     const struct brc_contacts *c = &sim->pairs;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     struct brc_neighbours grains = {0}, platens = {0};
     size_t *listed = malloc(c->n * sizeof *listed), n = 0;
     for (size_t i = 0, k = 0; i < c->n; i++) {
@@ -213,12 +213,12 @@ static double list_seconds(struct brc_sim *sim, const struct old_rows *old, bool
                               (old->pair[k][0] == c->a[i] && old->pair[k][1] < c->b[i])))
             k++;
         bool same = k < old->n && old->pair[k][0] == c->a[i] && old->pair[k][1] == c->b[i];
-        if (!same || old->wake[k] != rows->rebuild_at[i])
+        if (!same || old->wake[k] != columns->rebuild_at[i])
             listed[n++] = i;
     }
     double begin = cpu_seconds();
     for (size_t i = 0; i < n; i++)
-        must(sim->ctx, poly_list_row(sim, sim->state, listed[i]));
+        must(sim->ctx, poly_list_contact(sim, sim->state, listed[i]));
     if (candidates) {
         const struct brc_bodies *b = &sim->bodies;
         must(sim->ctx, brc_grid_pairs(sim->ctx, (const double(*)[3])b->x, b->bounding_radius,
@@ -239,7 +239,7 @@ static void listing(struct brc_context *ctx, const struct brc_specimen *specimen
                     const char *const settings[][2], const char *rate, const char *name)
 {
     struct brc_sim sim;
-    struct old_rows old = {0};
+    struct old_contacts old = {0};
     double steps = 0, lists = 0;
     make(ctx, &sim, specimen, settings, "compression", rate);
     for (int i = 0; i < PEAK_STEPS; i++) {

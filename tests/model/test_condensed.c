@@ -39,10 +39,10 @@ static double force_after(struct fixture *f, const char *kind, const char *setti
 
 static size_t count_held(const struct fixture *f)
 {
-    const struct poly_rows *rows = f->sim.pairs.model_columns;
+    const struct poly_contacts *columns = f->sim.pairs.model_columns;
     size_t n = 0;
     for (size_t i = 0; i < f->sim.pairs.n; i++)
-        n += rows->is_linearised[i];
+        n += columns->is_linearised[i];
     return n;
 }
 
@@ -110,11 +110,11 @@ static void look_at_row(struct changes *changes, const struct brc_contacts *c, s
 static void look_at_springs(struct changes *changes, const struct fixture *f)
 {
     const struct brc_contacts *c = &f->sim.pairs;
-    const struct poly_rows *rows = c->model_columns;
+    const struct poly_contacts *columns = c->model_columns;
     changes->weight = test_calloc(c->points.n, sizeof *changes->weight);
     poly_each_active(&f->sim, f->sim.state, note_weight, changes);
     for (size_t i = 0; i < c->n; i++)
-        if (rows->is_linearised[i])
+        if (columns->is_linearised[i])
             look_at_row(changes, c, i);
     test_free(changes->weight);
 }
@@ -218,18 +218,18 @@ static void tangent_is_the_slope(void **state)
     press(f, "eps_th: 0.05; evaluation: condensed; condensed_path: 0.005; mu: 0", "");
     fixture_steps(f, STEPS);
     struct brc_contacts *c = &f->sim.pairs;
-    struct poly_rows *rows = c->model_columns;
+    struct poly_contacts *columns = c->model_columns;
     double(*condensed)[3] = malloc(c->n * sizeof *condensed);
     double(*held)[6] = malloc(c->n * sizeof *held);
     bool *was_held = malloc(c->n * sizeof *was_held);
     for (size_t i = 0; i < c->n; i++) {
-        const double *shift = rows->motion[i];
-        was_held[i] = rows->is_linearised[i] &&
+        const double *shift = columns->motion[i];
+        was_held[i] = columns->is_linearised[i] &&
                       shift[POLY_MOTION_PATH] > 0.3 * shift[POLY_MOTION_END] &&
                       shift[POLY_MOTION_PATH] < 0.9 * shift[POLY_MOTION_END];
         memcpy(condensed[i], c->f[i], sizeof condensed[i]);
-        memcpy(held[i], rows->linearised_force[i], sizeof held[i]);
-        rows->is_linearised[i] = 0;
+        memcpy(held[i], columns->linearised_force[i], sizeof held[i]);
+        columns->is_linearised[i] = 0;
     }
     double now[3];
     fixture_carry(f, 0);

@@ -108,9 +108,9 @@ static bool place_duel(struct fixture *f, struct duel *d)
     }
     fixture_draw_unit(f, n);
     b->x[1][0] = 10; /* apart first, so that nothing is remembered of the last trial */
-    struct poly_rows *rows = f->sim.pairs.model_columns;
+    struct poly_contacts *columns = f->sim.pairs.model_columns;
     for (size_t row = 0; row < f->sim.pairs.n; row++)
-        rows->skin_left[row] = 0; /* a jump is not a path */
+        columns->skin_left[row] = 0; /* a jump is not a path */
     fixture_forces(f);
     fixture_list(f);
     assert_int_equal(f->sim.pairs.n, 0);
