@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sums over facets, made once for a specimen: the guess and its inverse then cost nothing. Areas
+ * are eroded in the same way as the polyhedra model does, else the two would disagree about small
+ * facets. */
 #include "calib/fabric.h"
 #include "common/specimen/erosion.h"
 #include "common/geometry/vec.h"

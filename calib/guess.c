@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Closed formulas and constants of published sets: a guess costs no run and saves a calibration
+ * many. What was estimated, and how, goes into a note beside the values. */
 #include "calib/guess.h"
 
 #include <math.h>
@@ -21,10 +23,10 @@ static const double interlock_angle = 42.0 * BRC_PI / 180;
 static const double cohesion_over_tau = 0.267;
 static const double strength_over_tau = 1.29;
 
-static void note(struct calib_guess *g, const char *format, ...)
+static void add_note(struct calib_guess *g, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-static void note(struct calib_guess *g, const char *format, ...)
+static void add_note(struct calib_guess *g, const char *format, ...)
 {
     size_t used = strlen(g->note);
     va_list args;
@@ -86,14 +88,14 @@ static int guess_elastic(struct brc_context *ctx, const struct calib_rock *rock,
     BRC_TRY(calib_moduli_invert(ctx, rock->e, rock->nu, how, s));
     BRC_TRY(calib_moduli(ctx, s, &out->e, &out->nu));
     out->nu_misfit = out->nu - rock->nu;
-    note(out, "Stiffnesses from E = %.4g GPa and nu = %.4g by a uniform strain.", rock->e / 1e9,
-         rock->nu);
+    add_note(out, "Stiffnesses from E = %.4g GPa and nu = %.4g by a uniform strain.", rock->e / 1e9,
+             rock->nu);
     if (fabs(out->nu_misfit) > 1e-9)
-        note(out, " That nu is out of reach; the nearest is %.4g, off by %.4g.", out->nu,
-             out->nu_misfit);
+        add_note(out, " That nu is out of reach; the nearest is %.4g, off by %.4g.", out->nu,
+                 out->nu_misfit);
     if (rock->is_tension_estimated)
-        note(out, " Direct tension %.4g MPa taken as %.2f of the Brazilian strength.",
-             rock->tension / 1e6, direct_over_brazilian);
+        add_note(out, " Direct tension %.4g MPa taken as %.2f of the Brazilian strength.",
+                 rock->tension / 1e6, direct_over_brazilian);
     return 0;
 }
 
@@ -103,7 +105,7 @@ static int guess_friction(struct brc_context *ctx, const struct calib_rock *rock
 {
     double angle = rock->friction_angle - interlock_angle;
     if (rock->friction_angle == 0) {
-        note(out, " Friction of contacts not guessed: no friction_angle.");
+        add_note(out, " Friction of contacts not guessed: no friction_angle.");
         return 0;
     }
     if (angle < 0 && !params->nearest)
@@ -112,12 +114,12 @@ static int guess_friction(struct brc_context *ctx, const struct calib_rock *rock
                  "facets give without friction; `nearest` takes friction 0 and states the misfit",
                  rock->friction_angle * 180 / BRC_PI, interlock_angle * 180 / BRC_PI);
     if (angle < 0) {
-        note(out, " Friction angle is out of reach; friction 0, off by %.4g deg.",
-             -angle * 180 / BRC_PI);
+        add_note(out, " Friction angle is out of reach; friction 0, off by %.4g deg.",
+                 -angle * 180 / BRC_PI);
         angle = 0;
     } else {
-        note(out, " Friction: interlocking gives %.3g deg of the friction angle.",
-             interlock_angle * 180 / BRC_PI);
+        add_note(out, " Friction: interlocking gives %.3g deg of the friction angle.",
+                 interlock_angle * 180 / BRC_PI);
     }
     add(out, "mu", "1", tan(angle));
     return 0;
@@ -129,14 +131,14 @@ static int guess_friction(struct brc_context *ctx, const struct calib_rock *rock
 static double guess_tau(const struct calib_rock *rock, struct calib_guess *out)
 {
     if (rock->cohesion > 0) {
-        note(out, " tau = cohesion / %.3g (published sets).", cohesion_over_tau);
+        add_note(out, " tau = cohesion / %.3g (published sets).", cohesion_over_tau);
         return rock->cohesion / cohesion_over_tau;
     }
     if (rock->strength > 0) {
-        note(out, " tau = unconfined strength / %.3g (published sets).", strength_over_tau);
+        add_note(out, " tau = unconfined strength / %.3g (published sets).", strength_over_tau);
         return rock->strength / strength_over_tau;
     }
-    note(out, " tau not guessed: neither cohesion nor strength.");
+    add_note(out, " tau not guessed: neither cohesion nor strength.");
     return 0;
 }
 
@@ -160,7 +162,7 @@ int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
         add(out, "tau", "Pa", tau);
         add(out, "g_fs", "J/m2", energy_scale * tau * tau / eta);
     }
-    note(out, " Fracture energies are %.3g times the elastic ones.", params->energy_ratio);
+    add_note(out, " Fracture energies are %.3g times the elastic ones.", params->energy_ratio);
     return guess_friction(ctx, rock, params, out);
 }
 
@@ -190,7 +192,7 @@ int calib_guess_polyhedra(struct brc_context *ctx, const struct calib_rock *rock
     add(out, "bt", "Pa", s.t_open / fabric->bond);
     add(out, "eps_th", "1",
         fabric->stretch * largest_bond_strain(nu_tension) * rock->tension / e_tension);
-    note(out, " Modulus in tension %.4g GPa. eps_th: first bond to break in direct tension.",
-         e_tension / 1e9);
+    add_note(out, " Modulus in tension %.4g GPa. eps_th: first bond to break in direct tension.",
+             e_tension / 1e9);
     return guess_friction(ctx, rock, params, out);
 }

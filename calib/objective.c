@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Residuals are differences in standard deviations: targets have different units and are known to
+ * different certainty. A run that gives no value is an error that names its test: any number in its
+ * place would lead the search on. */
 #include "calib/objective.h"
 
 #include "common/rigs/rigs.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One trial of a calibration is one ordinary run of the test's case, so that what a calibration
+ * finds can be repeated from the command line. Pictures alone are left out. */
 #include "calib/simulate.h"
 #include "common/rigs/rigs.h"
 #include "common/runs/run.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A target file is read as a case file is: the same units, ranges and messages, and no second
+ * reader to keep in step. */
 #include "calib/target.h"
 #include "common/input/casefile.h"
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The command line. */
+/* The command line: commands and options are tables, from which help, the manual page, completion
+ * and the reader come. Nothing is done here but to choose what other rooms do; the order matters
+ * where signals are held before MPI starts its threads. */
 #include "common/parallel/comm.h"
 #include "common/runs/compare.h"
 #include "common/base/console.h"
@@ -33,7 +35,7 @@ struct options {
 /* Options by command: R run, C compare, V converge, X export. */
 static const struct option {
     const char *name, *value, *commands, *help;
-} options[] = {
+} option_table[] = {
     {"--model", "NAME", "R", "contact model; default: `model` of the case"},
     {"--model", "NAME", "V", "this model alone; default: those that compare runs"},
     {"-o", "DIR", "V", "folder of results; default: results/<case>"},
@@ -56,7 +58,7 @@ static const struct option {
     {"--quiet", NULL, "RCV", "no progress, no log lines"},
     {"--help", NULL, "RCVPMIX", "this text"},
 };
-enum { N_OPTIONS = sizeof options / sizeof options[0] };
+enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
 struct command {
     const char *name;
@@ -145,11 +147,12 @@ static void print_command_help(FILE *out, const struct command *c)
     fputs("\noptions:\n", out);
     for (int i = 0; i < N_OPTIONS; i++) {
         char left[40];
-        if (!strchr(options[i].commands, c->letter))
+        if (!strchr(option_table[i].commands, c->letter))
             continue;
-        snprintf(left, sizeof left, "%s%s%s", options[i].name, options[i].value ? " " : "",
-                 options[i].value ? options[i].value : "");
-        fprintf(out, "  %-18s %s\n", left, options[i].help);
+        snprintf(left, sizeof left, "%s%s%s", option_table[i].name,
+                 option_table[i].value ? " " : "",
+                 option_table[i].value ? option_table[i].value : "");
+        fprintf(out, "  %-18s %s\n", left, option_table[i].help);
     }
     fprintf(out, "\nexample:\n  %s\n\n", c->example);
     print_statuses(out);
@@ -169,9 +172,9 @@ static const char *suggest(const char *text, const char *const *names, int n,
 static const struct option *find_option(const struct command *c, const char *name, size_t length)
 {
     for (int i = 0; i < N_OPTIONS; i++)
-        if (strchr(options[i].commands, c->letter) && strlen(options[i].name) == length &&
-            strncmp(options[i].name, name, length) == 0)
-            return &options[i];
+        if (strchr(option_table[i].commands, c->letter) && strlen(option_table[i].name) == length &&
+            strncmp(option_table[i].name, name, length) == 0)
+            return &option_table[i];
     return NULL;
 }
 
@@ -181,15 +184,15 @@ static int fail_option(struct brc_context *ctx, const struct command *c, const c
     char name[64], hint[BRC_HINT_SIZE];
     int n = 0;
     for (int i = 0; i < N_OPTIONS; i++)
-        if (strchr(options[i].commands, c->letter))
-            names[n++] = options[i].name;
+        if (strchr(option_table[i].commands, c->letter))
+            names[n++] = option_table[i].name;
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
     suggest(name, names, n, hint);
     BRC_FAIL(ctx, BRC_ERR_USAGE, "%s has no option '%s'%s%s", c->name, name, hint,
              *hint ? "" : "; see breccia COMMAND --help");
 }
 
-static int take_count(struct brc_context *ctx, const char *name, const char *value, int largest,
+static int read_count(struct brc_context *ctx, const char *name, const char *value, int largest,
                       int *count)
 {
     char *end;
@@ -202,7 +205,7 @@ static int take_count(struct brc_context *ctx, const char *name, const char *val
 }
 
 /* Options of converge alone; false when the name is none. */
-static bool take_converge_option(struct brc_context *ctx, struct options *o, const char *name,
+static bool read_converge_option(struct brc_context *ctx, struct options *o, const char *name,
                                  const char *value, int *code)
 {
     if (strcmp(name, "--observable") == 0)
@@ -210,21 +213,21 @@ static bool take_converge_option(struct brc_context *ctx, struct options *o, con
     else if (strcmp(name, "--axes") == 0)
         o->axes = value;
     else if (strcmp(name, "--seeds") == 0)
-        *code = take_count(ctx, name, value, BRC_CONVERGE_MAX_SEEDS, &o->seeds);
+        *code = read_count(ctx, name, value, BRC_CONVERGE_MAX_SEEDS, &o->seeds);
     else if (strcmp(name, "--refine") == 0)
-        *code = take_count(ctx, name, value, BRC_CONVERGE_MAX_REFINE, &o->refine);
+        *code = read_count(ctx, name, value, BRC_CONVERGE_MAX_REFINE, &o->refine);
     else if (strcmp(name, "--jobs") == 0)
-        *code = take_count(ctx, name, value, BRC_PROGRESS_MAX_RUNS, &o->jobs);
+        *code = read_count(ctx, name, value, BRC_PROGRESS_MAX_RUNS, &o->jobs);
     else
         return false;
     return true;
 }
 
-static int take_option(struct brc_context *ctx, struct options *o, const char *name,
+static int read_option(struct brc_context *ctx, struct options *o, const char *name,
                        const char *value)
 {
     int code = 0;
-    if (take_converge_option(ctx, o, name, value, &code))
+    if (read_converge_option(ctx, o, name, value, &code))
         return code;
     if (strcmp(name, "--model") == 0) {
         o->model = value;
@@ -278,7 +281,7 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
         o->given[2 * o->n_given] = option->name;
         o->given[2 * o->n_given++ + 1] = value;
     }
-    return take_option(ctx, o, option->name, value);
+    return read_option(ctx, o, option->name, value);
 }
 
 static int read_words(struct brc_context *ctx, const struct command *c, char **words,
@@ -304,6 +307,33 @@ static int read_words(struct brc_context *ctx, const struct command *c, char **w
 }
 
 /* ---- commands ------------------------------------------------------------------------------ */
+
+/* What commands on a case have in common: it is read, and places in it are told in their messages.
+ */
+static int with_case(struct brc_context *ctx, const struct options *o,
+                     int (*command)(struct brc_context *ctx, const struct options *o,
+                                    const struct brc_case *run_case))
+{
+    struct brc_case run_case;
+    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
+    if (code == 0) {
+        code = command(ctx, o, &run_case);
+        brc_case_locate(ctx, &run_case);
+    }
+    brc_case_free(&run_case);
+    return code;
+}
+
+/* Where results go: as the user says, else by the names of the case and, for a run, of its model.
+ */
+static void choose_dir(char dir[BRC_PATH_SIZE], const struct options *o,
+                       const struct brc_case *run_case, const char *model)
+{
+    if (o->dir)
+        snprintf(dir, BRC_PATH_SIZE, "%s", o->dir);
+    else
+        snprintf(dir, BRC_PATH_SIZE, "results/%s%s%s", run_case->name, *model ? "/" : "", model);
+}
 
 static int make_specimen(struct brc_context *ctx, const struct brc_case *run_case,
                          struct brc_specimen *specimen)
@@ -337,21 +367,18 @@ static int run_model(struct brc_context *ctx, const struct options *o,
     struct brc_specimen specimen = {0};
     struct brc_progress progress;
     struct brc_summary summary;
-    struct brc_run_options order = {.run_case = run_case,
-                                    .specimen = &specimen,
-                                    .dir = dir,
-                                    .is_resumed = o->is_resumed,
-                                    .is_forced = o->is_forced,
-                                    .progress = &progress};
+    struct brc_run_options options = {.run_case = run_case,
+                                      .specimen = &specimen,
+                                      .dir = dir,
+                                      .is_resumed = o->is_resumed,
+                                      .is_forced = o->is_forced,
+                                      .progress = &progress};
     const char *name = o->model ? o->model : run_case->file.head.model;
     if (!*name)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
                  o->operand);
-    BRC_TRY(brc_case_model(ctx, name, &order.model));
-    if (o->dir)
-        snprintf(dir, sizeof dir, "%s", o->dir);
-    else
-        snprintf(dir, sizeof dir, "results/%s/%s", run_case->name, name);
+    BRC_TRY(brc_case_model(ctx, name, &options.model));
+    choose_dir(dir, o, run_case, name);
     BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
     brc_signals_leave();
     int code = make_specimen(ctx, run_case, &specimen);
@@ -361,7 +388,7 @@ static int run_model(struct brc_context *ctx, const struct options *o,
     }
     if (code == 0) {
         brc_progress_begin(&progress, stderr, &name, 1, o->is_quiet);
-        code = brc_run(ctx, &order, &summary);
+        code = brc_run(ctx, &options, &summary);
         brc_progress_end(&progress);
     }
     if (code == 0 || code == BRC_ERR_ENERGY)
@@ -372,13 +399,7 @@ static int run_model(struct brc_context *ctx, const struct options *o,
 
 static int act_run(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_case run_case;
-    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
-    if (code == 0) {
-        code = run_model(ctx, o, &run_case);
-        brc_case_locate(ctx, &run_case);
-    }
-    brc_case_free(&run_case);
+    int code = with_case(ctx, o, run_model);
     brc_comm_end();
     return code;
 }
@@ -388,21 +409,18 @@ static int compare_case(struct brc_context *ctx, const struct options *o,
 {
     char dir[BRC_PATH_SIZE];
     struct brc_specimen specimen = {0};
-    const struct brc_compare_options order = {.run_case = run_case,
-                                              .specimen = &specimen,
-                                              .dir = dir,
-                                              .is_resumed = o->is_resumed,
-                                              .is_forced = o->is_forced,
-                                              .is_quiet = o->is_quiet};
-    if (o->dir)
-        snprintf(dir, sizeof dir, "%s", o->dir);
-    else
-        snprintf(dir, sizeof dir, "results/%s", run_case->name);
+    const struct brc_compare_options options = {.run_case = run_case,
+                                                .specimen = &specimen,
+                                                .dir = dir,
+                                                .is_resumed = o->is_resumed,
+                                                .is_forced = o->is_forced,
+                                                .is_quiet = o->is_quiet};
+    choose_dir(dir, o, run_case, "");
     brc_signals_leave();
     int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0) {
         brc_signals_hold();
-        code = brc_compare(ctx, &order);
+        code = brc_compare(ctx, &options);
     }
     if (code == 0)
         printf("results in %s\n", dir);
@@ -412,40 +430,30 @@ static int compare_case(struct brc_context *ctx, const struct options *o,
 
 static int act_compare(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_case run_case;
-    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
-    if (code == 0) {
-        code = compare_case(ctx, o, &run_case);
-        brc_case_locate(ctx, &run_case);
-    }
-    brc_case_free(&run_case);
-    return code;
+    return with_case(ctx, o, compare_case);
 }
 
 static int converge_case(struct brc_context *ctx, const struct options *o,
                          const struct brc_case *run_case)
 {
     char dir[BRC_PATH_SIZE];
-    const struct brc_converge_options order = {.run_case = run_case,
-                                               .model = o->model,
-                                               .dir = dir,
-                                               .observable =
-                                                   o->observable ? o->observable : "strength",
-                                               .axes = o->axes ? o->axes : "",
-                                               .seeds = o->seeds ? o->seeds : 4,
-                                               .refine = o->refine ? o->refine : 8,
-                                               .jobs = o->jobs ? o->jobs : 1,
-                                               .is_resumed = o->is_resumed,
-                                               .is_forced = o->is_forced};
-    if (order.refine < 2 || (order.refine & (order.refine - 1)) != 0)
+    const struct brc_converge_options options = {.run_case = run_case,
+                                                 .model = o->model,
+                                                 .dir = dir,
+                                                 .observable =
+                                                     o->observable ? o->observable : "strength",
+                                                 .axes = o->axes ? o->axes : "",
+                                                 .seeds = o->seeds ? o->seeds : 4,
+                                                 .refine = o->refine ? o->refine : 8,
+                                                 .jobs = o->jobs ? o->jobs : 1,
+                                                 .is_resumed = o->is_resumed,
+                                                 .is_forced = o->is_forced};
+    if (options.refine < 2 || (options.refine & (options.refine - 1)) != 0)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
-                 BRC_CONVERGE_MAX_REFINE, order.refine);
-    if (o->dir)
-        snprintf(dir, sizeof dir, "%s", o->dir);
-    else
-        snprintf(dir, sizeof dir, "results/%s", run_case->name);
+                 BRC_CONVERGE_MAX_REFINE, options.refine);
+    choose_dir(dir, o, run_case, "");
     brc_signals_hold();
-    int code = brc_converge(ctx, &order);
+    int code = brc_converge(ctx, &options);
     if (code == 0)
         printf("results in %s\n", dir);
     return code;
@@ -453,14 +461,7 @@ static int converge_case(struct brc_context *ctx, const struct options *o,
 
 static int act_converge(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_case run_case;
-    int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
-    if (code == 0) {
-        code = converge_case(ctx, o, &run_case);
-        brc_case_locate(ctx, &run_case);
-    }
-    brc_case_free(&run_case);
-    return code;
+    return with_case(ctx, o, converge_case);
 }
 
 static int act_info(struct brc_context *ctx, const struct options *o)
@@ -473,9 +474,9 @@ static int act_export(struct brc_context *ctx, const struct options *o)
     const char *what = o->format ? o->format : o->table;
     if (!what || (o->format && o->table))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
-    const struct brc_export_options order = {o->operand, o->dir, o->is_forced};
-    return o->table ? brc_export_table(ctx, &order, o->table)
-                    : brc_export_format(ctx, &order, o->format);
+    const struct brc_export_options options = {o->operand, o->dir, o->is_forced};
+    return o->table ? brc_export_table(ctx, &options, o->table)
+                    : brc_export_format(ctx, &options, o->format);
 }
 
 static int act_params(struct brc_context *ctx, const struct options *o)
@@ -556,7 +557,7 @@ static int act_first(struct brc_context *ctx, char **words, struct options *o)
 }
 
 /* The command that goes on with an interrupted one, or does it anew where nothing was saved. */
-static void tell_resume(FILE *out, int code, const struct options *o)
+static void print_resume(FILE *out, int code, const struct options *o)
 {
     bool is_saved = code == BRC_ERR_INTERRUPTED;
     fputs(is_saved ? "; go on with:" : "; start again with:", out);
@@ -584,7 +585,7 @@ int main(int argc, char **argv)
     if (*ctx.message) {
         fprintf(stderr, "breccia: %s", ctx.message);
         if (code == BRC_ERR_INTERRUPTED || code == BRC_ERR_NOT_BEGUN)
-            tell_resume(stderr, code, &o);
+            print_resume(stderr, code, &o);
         fputc('\n', stderr);
     }
     free(o.given);

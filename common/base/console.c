@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The descriptors are put right before anything else runs: a library that opens a file would get
+ * the number of a closed standard stream, and messages would go into results. Closing tells of a
+ * full disk, which printf does not. */
 #include "common/base/console.h"
 
 #include <errno.h>

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The first failure is kept and later ones are dropped: those that follow while a caller cleans up
+ * say less about the cause. Messages are one line whatever they quote, so that scripts can count
+ * them. */
 #include "common/base/error.h"
 
 #include <stdarg.h>

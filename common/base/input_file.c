@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A file is checked before it is opened, since opening some devices does something, and again once
+ * it is open, since it may have been replaced in between. */
 #include "common/base/input_file.h"
 
 #include <errno.h>
@@ -31,7 +33,8 @@ static size_t largest_of(const struct brc_input *in, FILE *file)
     return is_pipe && in->largest > BRC_INPUT_LARGEST_PIPE ? BRC_INPUT_LARGEST_PIPE : in->largest;
 }
 
-static int judge(struct brc_context *ctx, const struct brc_input *in, const struct stat *status)
+static int check_kind(struct brc_context *ctx, const struct brc_input *in,
+                      const struct stat *status)
 {
     if (S_ISDIR(status->st_mode))
         return fail_read(ctx, in, "it is a folder, not a file");
@@ -51,11 +54,11 @@ int brc_input_open(struct brc_context *ctx, const struct brc_input *in, FILE **f
     *file = NULL;
     if (stat(in->path, &status) != 0)
         return fail_read(ctx, in, strerror(errno));
-    BRC_TRY(judge(ctx, in, &status));
+    BRC_TRY(check_kind(ctx, in, &status));
     *file = fopen(in->path, "rb");
     if (!*file)
         return fail_read(ctx, in, strerror(errno));
-    int code = fstat(fileno(*file), &status) == 0 ? judge(ctx, in, &status)
+    int code = fstat(fileno(*file), &status) == 0 ? check_kind(ctx, in, &status)
                                                   : fail_read(ctx, in, strerror(errno));
     if (code != 0) {
         fclose(*file);

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reports are small enough for one write to a pipe, which is atomic, so children need no lock. The
+ * speed is a mean over half a minute: the time left would jump with each burst of breaking bonds.
+ */
 #include "common/base/progress.h"
 
 #include <inttypes.h>
@@ -65,7 +68,7 @@ bool brc_progress_is_due(const struct brc_progress *p)
 }
 
 /* Steps a second, smoothed over the last seconds: a step costs more or less as contacts open. */
-static void take_report(struct brc_progress_run *run, const struct brc_progress_report *report)
+static void store_report(struct brc_progress_run *run, const struct brc_progress_report *report)
 {
     double now = brc_progress_clock(), dt = now - run->time_before;
     run->report = *report;
@@ -162,7 +165,7 @@ void brc_progress_update(struct brc_progress *p, int run, const struct brc_progr
         send_report(p, report);
         return;
     }
-    take_report(&p->run[run], report);
+    store_report(&p->run[run], report);
     if (brc_progress_is_due(p) || report->is_done)
         draw(p);
 }

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The compiler's own test of the processor, not cpuid by hand: it also asks whether the system
+ * saves the registers. A set that is missing is an error rather than replaced, as the user named
+ * it. */
 #include "common/base/simd.h"
 
 #include "common/base/error.h"

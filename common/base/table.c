@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One block holds all columns of a table. They start at different places of a page's cache sets,
+ * since columns that are read together would otherwise evict each other, and large blocks ask for
+ * large pages. Rows are a multiple of four, so that vector loops need no remainder. */
 #define _DEFAULT_SOURCE /* for madvise; NOLINT(bugprone-reserved-identifier) */
 #include "common/base/table.h"
+
+#include "common/base/invariant.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +45,7 @@ static void **column_slot(const struct brc_table *t, int field)
 
 void *brc_table_column(const struct brc_table *t, int field)
 {
+    BRC_ASSERT(field >= 0 && field < t->set.n && t->n <= t->cap);
     return *column_slot(t, field);
 }
 
@@ -87,6 +93,7 @@ static int replace_columns(struct brc_context *ctx, struct brc_table *t, const s
 {
     size_t filled = round_up(n, ROWS);
     cap = round_up(cap, ROWS);
+    BRC_ASSERT(filled <= cap && n <= cap);
     size_t *offset = brc_alloc(ctx, (size_t)t->set.n, sizeof *offset);
     char *block = offset ? allocate(ctx, t, cap, offset) : NULL;
     if (!block) {
@@ -105,8 +112,10 @@ static int replace_columns(struct brc_context *ctx, struct brc_table *t, const s
         for (size_t row = 0; from && row < n; row++) {
             if (from[row] == BRC_NEW_ROW)
                 memset(to + row * size, 0, size);
-            else
+            else {
+                BRC_ASSERT(from[row] < t->n);
                 memcpy(to + row * size, old + from[row] * size, size);
+            }
         }
         if (from)
             memset(to + n * size, 0, (filled - n) * size);
@@ -174,6 +183,7 @@ static void gather_in_place(struct brc_table *t, const size_t *from, size_t n)
 
 int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t *from, size_t n)
 {
+    BRC_ASSERT(t->n <= t->cap);
     if (n <= t->cap && is_ascending(from, n)) {
         gather_in_place(t, from, n);
         return 0;

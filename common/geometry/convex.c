@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A box that half-spaces cut one by one. Each vertex is classed once a cut and each cut edge has
+ * one new vertex, so that neighbouring faces cannot disagree about a point within rounding of the
+ * plane. Far from the origin the work is done near the body's middle, where no digits are lost. */
 #include "common/geometry/convex.h"
 
 #include "common/base/grow.h"

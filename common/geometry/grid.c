@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A hashed grid: memory goes with the bodies, not with the volume, so that fragments may fly. Pairs
+ * come out sorted by body, whatever the order in the buckets, as sums follow their order. */
 #include "common/geometry/grid.h"
 
 #include "common/base/grow.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Points are numbered along a Hilbert curve, so that neighbours in space are near in memory.
+ * Morton's order is simpler and jumps across the whole box at every power of two. */
 #include "common/geometry/hilbert.h"
 
 #include <math.h>

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* YAML events to a flat list of entries, with the bytes where each stands: the writer puts values
+ * back in their place. Anchors, tags and several documents are refused: a case is data that people
+ * read. Knows the keys of no section but the top level's. */
 #include "common/input/casefile.h"
 
 #include "common/base/input_file.h"
@@ -196,7 +199,7 @@ static void end_value(struct reader *r, const yaml_mark_t *mark)
 }
 
 /* The key whose value comes now: an entry at the level it belongs to. */
-static int take_value(struct reader *r, const char *text, int line)
+static int add_value(struct reader *r, const char *text, int line)
 {
     struct level *top = &r->level[r->depth - 1];
     const char *name[3] = {r->depth > 1 ? r->level[0].key : "", r->depth > 2 ? r->level[1].key : "",
@@ -213,7 +216,7 @@ static int take_value(struct reader *r, const char *text, int line)
     return 0;
 }
 
-static int take_sequence_item(struct reader *r, const char *text)
+static int add_item(struct reader *r, const char *text)
 {
     size_t old = strlen(r->sequence), n = strlen(text);
     char *longer = brc_realloc(r->ctx, r->sequence, old + n + 3, 1);
@@ -224,7 +227,7 @@ static int take_sequence_item(struct reader *r, const char *text)
     return 0;
 }
 
-static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
+static int read_scalar(struct reader *r, const yaml_event_t *event, int line)
 {
     const char *text = (const char *)event->data.scalar.value;
     size_t n = event->data.scalar.length;
@@ -241,7 +244,7 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
     }
     end_value(r, &event->end_mark);
     if (r->is_sequence)
-        return take_sequence_item(r, text);
+        return add_item(r, text);
     if (top->key[0] == '\0') {
         char where[BRC_CASEFILE_WHERE_SIZE];
         BRC_TRY(check_name(r->ctx, text, n, brc_casefile_where(r->c, line, false, where)));
@@ -270,7 +273,7 @@ static int take_scalar(struct reader *r, const yaml_event_t *event, int line)
         top->has_values = true;
         return 0;
     }
-    return take_value(r, text, top->line);
+    return add_value(r, text, top->line);
 }
 
 static struct brc_casefile_place *place_of(struct reader *r, const struct level *level)
@@ -343,7 +346,7 @@ static int close_sequence(struct reader *r, const yaml_event_t *event)
     bool is_flow = r->c->text[r->begin] == '[';
     if (is_flow)
         end_value(r, &event->end_mark);
-    int code = take_value(r, r->sequence, r->level[r->depth - 1].line);
+    int code = add_value(r, r->sequence, r->level[r->depth - 1].line);
     free(r->sequence);
     r->sequence = NULL;
     r->is_sequence = false;
@@ -373,7 +376,7 @@ static int refuse_extras(struct reader *r, const yaml_event_t *event, int line)
     return 0;
 }
 
-static int take_event(struct reader *r, const yaml_event_t *event)
+static int read_event(struct reader *r, const yaml_event_t *event)
 {
     int line = (int)event->start_mark.line + 1;
     BRC_TRY(refuse_extras(r, event, line));
@@ -385,7 +388,7 @@ static int take_event(struct reader *r, const yaml_event_t *event)
         r->is_done = true;
         return 0;
     case YAML_SCALAR_EVENT:
-        return take_scalar(r, event, line);
+        return read_scalar(r, event, line);
     case YAML_MAPPING_START_EVENT:
         return open_mapping(r, event, line);
     case YAML_MAPPING_END_EVENT:
@@ -414,13 +417,13 @@ static int fail_yaml(struct reader *r, const yaml_parser_t *parser)
              parser->context ? parser->context : "");
 }
 
-static int take_events(struct reader *r, yaml_parser_t *parser)
+static int read_events(struct reader *r, yaml_parser_t *parser)
 {
     yaml_event_t event;
     for (bool is_end = false; !is_end;) {
         if (!yaml_parser_parse(parser, &event))
             return fail_yaml(r, parser);
-        int code = take_event(r, &event);
+        int code = read_event(r, &event);
         is_end = event.type == YAML_STREAM_END_EVENT;
         yaml_event_delete(&event);
         BRC_TRY(code);
@@ -436,7 +439,7 @@ static int parse_yaml(struct brc_context *ctx, struct brc_casefile *c, size_t si
         BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for the YAML parser");
     yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&parser, (const unsigned char *)c->text, size);
-    int code = take_events(&r, &parser);
+    int code = read_events(&r, &parser);
     yaml_parser_delete(&parser);
     free(r.sequence);
     return code;
@@ -482,7 +485,7 @@ static int check_override(struct brc_context *ctx, const char *assignment, const
     for (size_t i = 0, n; i < size; i += n) {
         n = utf8_length((const unsigned char *)assignment + i, size - i);
         if (n == 0 || (unsigned char)assignment[i] < 0x20)
-            BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: the value is no one-line UTF-8 text", where);
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: the value is not one line of UTF-8 text", where);
     }
     return 0;
 }

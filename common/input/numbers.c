@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* strtod in a loop rather than scanf, which reads past a number that is too large and cannot tell
+ * where a line ends. Rows keep their line for messages of whoever judges the values. */
 #include "common/input/numbers.h"
 
 #include "common/base/grow.h"
@@ -49,7 +51,7 @@ static int split(const char *text, double *value, int high)
     }
 }
 
-static int take_line(struct reader *r, char *text)
+static int read_line(struct reader *r, char *text)
 {
     double value[BRC_NUMBERS_MAX_WIDTH + 1];
     struct brc_numbers *t = r->out;
@@ -90,7 +92,7 @@ int brc_numbers_read(struct brc_context *ctx, const char *key, const char *path,
         if (*next)
             *next++ = '\0';
         r.line++;
-        code = take_line(&r, line);
+        code = read_line(&r, line);
     }
     if (code == 0 && out->n == 0)
         code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text to values and back. A value is written in the unit of its default with as many digits as
+ * read back to the same bits, so that a kept case makes the same run. Conversions by powers of ten
+ * move the exponent in the text: multiplying would make 5.1 mm another double than 0.0051 m. */
 #include "common/input/params.h"
 #include "common/input/units.h"
 
@@ -22,7 +25,7 @@ struct interval {
 /* ---- numbers ------------------------------------------------------------------------------- */
 
 /* Length of the decimal number that text starts with, 0 when there is none. Hexadecimal, inf and
- * nan, which strtod would take, are no numbers here. */
+ * nan, which strtod would take, are not numbers here. */
 static size_t number_length(const char *text)
 {
     const char *c = text;
@@ -167,7 +170,7 @@ static int check_range(struct brc_context *ctx, const struct brc_param *p, doubl
     if (!p->range)
         return 0;
     if (!parse_interval(p->range, &r))
-        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the declared range '%s' is no interval", place,
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the declared range '%s' is not an interval", place,
                  p->range);
     bool inside = (r.low_open ? value > r.low : value >= r.low) &&
                   (r.high_open ? value < r.high : value <= r.high);
@@ -517,7 +520,7 @@ static int check_declaration(struct brc_context *ctx, struct brc_param_list list
     if (p->offset + kind_size(p->kind) > list.owner_size)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the member lies outside its struct", place);
     if (p->range && !parse_interval(p->range, &r))
-        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the range '%s' is no interval", place, p->range);
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the range '%s' is not an interval", place, p->range);
     if ((p->kind == BRC_CHOICE || p->kind == BRC_FLAG) && (!p->choices || !*p->choices))
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: the choices are missing", place);
     return brc_units_factor(ctx, p->unit, p->unit, place, &factor);

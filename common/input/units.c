@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* UDUNITS-2 accepts more than a case should: reciprocals, offsets, numbers in odd places and angles
+ * as pure numbers. Each is a likely slip in a case, so each is refused here. */
 #include "common/input/units.h"
 
 #include <udunits2.h>

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The header holds size and hash of all that follows, as text that a person can read. It is
+ * compared as a whole with the one that the content makes, so that damage to the header is found as
+ * well. */
 #include "common/output/checksum_header.h"
 
 #include "common/base/table.h"
@@ -77,8 +80,8 @@ void brc_checksum_make(char header[BRC_CHECKSUM_SIZE], const struct brc_checksum
 }
 
 /* Takes the numbers out of a header, as far as they are there: it is compared as a whole later. */
-static bool read_seal(const char text[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,
-                      struct header *s)
+static bool read_header(const char text[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,
+                        struct header *s)
 {
     char line[BRC_CHECKSUM_SIZE + 1], mark[MARK_SIZE];
     size_t length = make_mark(kind, mark);
@@ -99,7 +102,7 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file, siz
     char text[BRC_CHECKSUM_SIZE], expected[BRC_CHECKSUM_SIZE];
     struct header said, found = {.format = kind->format};
     if (fread(text, 1, BRC_CHECKSUM_SIZE, file) != BRC_CHECKSUM_SIZE ||
-        !read_seal(text, kind, &said))
+        !read_header(text, kind, &said))
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "cannot read %s: it is not a %s file of breccia, is cut short, or is of a version "
                  "before %s; %s",

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Meshes of the present state, made in memory and apart from writing: the frame at the peak is kept
+ * until it is certain that no larger load follows. */
 #include "common/output/frame_mesh.h"
 
 #include "common/geometry/vec.h"

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which states become frames. Strain and load go unevenly and their ends are not known, so frames
+ * are not taken at fixed intervals: a new one displaces the one whose loss leaves the smallest gap.
+ * The table is part of the saved state, and files that are not in it are removed. */
 #include "common/output/frames.h"
 
 #include "common/base/folders.h"
@@ -79,7 +82,7 @@ static int add_row(struct brc_context *ctx, struct brc_frames *f, const struct b
 }
 
 /* Takes a role from a row, and the row away when it has none left. */
-static int take_role(struct brc_context *ctx, struct brc_frames *f, size_t i, uint8_t role)
+static int drop_role(struct brc_context *ctx, struct brc_frames *f, size_t i, uint8_t role)
 {
     f->role[i] &= (uint8_t)~role;
     if (f->role[i] != 0)
@@ -149,7 +152,7 @@ static int choose_by_gaps(struct brc_context *ctx, struct brc_frames *f, const s
     }
     *is_taken = n < most ||
                 (least != SIZE_MAX && (least != newest || newest_gap < 0.5 * all / (double)most));
-    return *is_taken && n >= most ? take_role(ctx, f, least, BRC_FRAME_SPACED) : 0;
+    return *is_taken && n >= most ? drop_role(ctx, f, least, BRC_FRAME_SPACED) : 0;
 }
 
 /* Counts each multiple of the interval that has been passed; one that rounding has put just below
@@ -178,7 +181,7 @@ static int choose(struct brc_context *ctx, struct brc_frames *f, const struct br
     BRC_TRY(choose_by_gaps(ctx, f, sim, p->frames > 2 ? (size_t)p->frames - 1 : 1, is_taken));
     if (*is_taken)
         f->role[f->table.n - 1] |= BRC_FRAME_SPACED;
-    return *is_taken ? 0 : take_role(ctx, f, f->table.n - 1, 0);
+    return *is_taken ? 0 : drop_role(ctx, f, f->table.n - 1, 0);
 }
 
 static bool is_new_peak(const struct brc_sim *sim)
@@ -196,7 +199,7 @@ static int move_peak(struct brc_context *ctx, struct brc_frames *f, const struct
         return 0;
     drop_peak_mesh(f);
     if (old != SIZE_MAX)
-        BRC_TRY(take_role(ctx, f, old, BRC_FRAME_PEAK));
+        BRC_TRY(drop_role(ctx, f, old, BRC_FRAME_PEAK));
     return add_row(ctx, f, sim, BRC_FRAME_PEAK);
 }
 
@@ -290,9 +293,9 @@ static int keep_peak(struct brc_context *ctx, struct brc_frames *f, const struct
     return f->peak ? brc_frame_mesh_make(ctx, sim, f->peak) : BRC_ERR_MEMORY;
 }
 
-int brc_frames_take(struct brc_context *ctx, struct brc_frames *f, const char *dir,
-                    const struct brc_output_params *p, const struct brc_sim *sim,
-                    const struct brc_h5_extra *extra)
+int brc_frames_update(struct brc_context *ctx, struct brc_frames *f, const char *dir,
+                      const struct brc_output_params *p, const struct brc_sim *sim,
+                      const struct brc_h5_extra *extra)
 {
     bool is_taken;
     if (!brc_frames_are_on(p))

@@ -39,9 +39,9 @@ void brc_frames_free(struct brc_frames *f);
 bool brc_frames_are_on(const struct brc_output_params *p);
 /* The frames of the present state, if it is one of them: at most one a row of the curve, where they
  * are not asked for by steps. To be called at each step, and once more after a load. */
-int brc_frames_take(struct brc_context *ctx, struct brc_frames *f, const char *dir,
-                    const struct brc_output_params *p, const struct brc_sim *sim,
-                    const struct brc_h5_extra *extra);
+int brc_frames_update(struct brc_context *ctx, struct brc_frames *f, const char *dir,
+                      const struct brc_output_params *p, const struct brc_sim *sim,
+                      const struct brc_h5_extra *extra);
 /* Writes the frame of the peak that is still in memory: before the table is saved. */
 int brc_frames_flush(struct brc_context *ctx, struct brc_frames *f, const char *dir,
                      const struct brc_h5_extra *extra);

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* gnuplot runs in the folder with names relative to it, and every text in a script is quoted beyond
+ * its reach: titles come from cases that others wrote. Without gnuplot a run is complete all the
+ * same. */
 #include "common/output/gnuplot.h"
 
 #include "common/base/folders.h"

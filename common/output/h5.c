@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The only user of HDF5. A file is made in memory and written at once, as the library crashes when
+ * a disk is full; files hold no times, so that equal states are equal files. */
 #include "common/output/h5.h"
 
 #include "common/base/folders.h"
@@ -101,7 +103,7 @@ int brc_h5_create(struct brc_context *ctx, const char *path, const struct brc_ch
 }
 
 /* The bytes of the file without its user block; allocated. */
-static int take_image(const struct brc_h5_file *f, char **image, size_t *n)
+static int copy_image(const struct brc_h5_file *f, char **image, size_t *n)
 {
     ssize_t size = H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(f->id, NULL, 0);
     *image = NULL;
@@ -162,7 +164,7 @@ int brc_h5_finish(struct brc_h5_file *f, int code)
     char temporary[BRC_PATH_SIZE], *image = NULL;
     size_t n = 0;
     if (code == 0)
-        code = take_image(f, &image, &n);
+        code = copy_image(f, &image, &n);
     H5Fclose(f->id);
     if (code == 0)
         code = part_path(f->ctx, f->path, temporary);

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads what any state or frame holds from the file alone: no case, no model and no specimen is
+ * needed, so that a file from another version can be looked at. */
 #include "common/output/info.h"
 
 #include "common/base/input_file.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which parts of a simulation stand in a state file, and in what order they are checked on the way
+ * back: sizes before memory is taken, the specimen's hash before fields, the state's hash last. */
 #include "common/output/io_h5.h"
 
 #include <inttypes.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory of a mesh; what it shows is filled in by frame_mesh.c. */
 #include "common/output/mesh.h"
 
 #include "common/base/grow.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* JSON and CSV by hand: two dozen keys and plain tables do not need a library. Numbers have 17
+ * digits, so that they read back to the same bits, and what was not measured is null, never 0. */
 #include "common/output/output.h"
 
 #include "common/base/text_file.h"

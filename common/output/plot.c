@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scripts of gnuplot with the data of cracks in them: pictures can be drawn again, or changed,
+ * without breccia. Facets are drawn, not grains: what matters is where the specimen has broken. */
 #include "common/output/plot.h"
 
 #include "common/base/text_file.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* VTK's own layout of HDF5 (VTKHDF) rather than XML files: one file a frame, the same checksum as
+ * states, and no second library. */
 #include "common/output/vtk.h"
 
 #include "common/base/text_file.h"

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A key without effect is an error, not a warning: whoever gives it believes that it acts, and
+ * reads the result so. Expressions are read each time: they are short, and parsing ahead would need
+ * a second form of the same declaration. */
 #include "common/runs/applies.h"
 
 #include <stdio.h>
@@ -14,7 +17,7 @@ struct part {
 };
 
 /* Takes a part from the text; returns what follows, NULL when it cannot be read. */
-static const char *take_part(const char *text, const char *section, struct part *part)
+static const char *read_part(const char *text, const char *section, struct part *part)
 {
     size_t n = strcspn(text, "=,"), dot = strcspn(text, ".=,");
     if (text[n] != '=')
@@ -79,7 +82,7 @@ int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const 
         while (is_more) {
             struct part part;
             bool does;
-            at = take_part(at, section, &part);
+            at = read_part(at, section, &part);
             if (!at)
                 BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s.%s: cannot read '%s'", section, p->key,
                          p->applies);
@@ -102,7 +105,7 @@ static bool is_overridden(const struct brc_case *run_case, const char *section, 
     struct part part;
     struct brc_param_list list;
     for (const char *at = clause;; at += 4) {
-        at = take_part(at, section, &part);
+        at = read_part(at, section, &part);
         brc_case_find_section(part.section, &list);
         const struct brc_casefile_entry *e =
             brc_casefile_find_entry(&run_case->file, part.section, part.key, list);
@@ -118,7 +121,7 @@ static bool mentions(const char *applies, const char *section, const struct part
 {
     struct part part;
     for (const char *at = applies; at && *at;) {
-        at = take_part(at, section, &part);
+        at = read_part(at, section, &part);
         if (at && strcmp(part.section, wanted->section) == 0 && strcmp(part.key, wanted->key) == 0)
             return true;
         if (at)
@@ -162,7 +165,7 @@ static int refuse(struct brc_context *ctx, const struct brc_case *run_case, cons
     struct part part;
     struct brc_param_list far;
     char where[BRC_CASEFILE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE], said[TEXT_SIZE];
-    take_part(clause, section, &part);
+    read_part(clause, section, &part);
     int i = brc_case_find_section(part.section, &far);
     const struct brc_param *p = brc_params_find(far, part.key);
     const struct brc_casefile_entry *given =

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order of the steps matters: sections first, then names of sections, then whether keys apply,
+ * which depends on values; files last, since overrides count from another folder. */
 #include "common/runs/case.h"
 
 #include "common/runs/applies.h"
@@ -8,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void take_name(struct brc_case *run_case, const char *path)
+static void set_name(struct brc_case *run_case, const char *path)
 {
     const char *slash = strrchr(path, '/');
     snprintf(run_case->name, sizeof run_case->name, "%s", slash ? slash + 1 : path);
@@ -70,7 +72,7 @@ static int check_indents(struct brc_context *ctx, const struct brc_case *run_cas
     return 0;
 }
 
-static int judge(struct brc_context *ctx, struct brc_case *run_case)
+static int check_sections(struct brc_context *ctx, struct brc_case *run_case)
 {
     const char *names[BRC_CASE_MAX_SECTIONS];
     struct brc_param_list list;
@@ -93,7 +95,7 @@ static int judge(struct brc_context *ctx, struct brc_case *run_case)
 static int start(struct brc_context *ctx, struct brc_case *run_case, const char *path)
 {
     memset(run_case, 0, sizeof *run_case);
-    take_name(run_case, path);
+    set_name(run_case, path);
     if (!brc_casefile_is_text(run_case->name))
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "the name of the case file is not valid UTF-8 text, and it stands in the results; "
@@ -107,7 +109,7 @@ static int finish(struct brc_context *ctx, struct brc_case *run_case, const char
 {
     for (int k = 0; k < n; k++)
         BRC_TRY(brc_casefile_override(ctx, &run_case->file, overrides[k]));
-    BRC_TRY(judge(ctx, run_case));
+    BRC_TRY(check_sections(ctx, run_case));
     return brc_case_find_files(ctx, run_case);
 }
 

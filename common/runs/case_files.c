@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names in a case are seen from its folder, those of --set from the working folder, as a shell
+ * would complete them. Files are compared by device and inode: links and `..` make paths useless
+ * for that. */
 #include "common/runs/case_files.h"
 
 #include <stdio.h>

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The user's text is edited rather than written anew: comments say why a value is what it is. What
+ * comes out is read back and must make the same parameters, as a kept case that makes another run
+ * is worse than none. */
 #define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): glibc has realpath so */
 
 #include "common/runs/case_keep.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Models are asked from the registry by number, so that a new model needs no line here. */
 #include "common/runs/case_sections.h"
 
 #include "common/runs/case.h"

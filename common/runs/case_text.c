@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text rather than a hash of the values: a state that does not fit can then say which key differs,
+ * and what it was. */
 #include "common/runs/case_text.h"
 
 #include "common/rigs/loading.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Processes rather than threads: a model that crashes, or a library that keeps state of the
+ * process, leaves the other runs alone, and each run has its own processor time. */
 #include "common/runs/child.h"
 
 #include "common/base/signals.h"

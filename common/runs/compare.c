@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Each simulation is built once in the parent and dropped, so that what one model refuses is told
+ * before any folder is touched. The first real failure counts; an interruption is the user's wish.
+ */
 #include "common/runs/compare.h"
 
 #include "common/base/signals.h"
@@ -23,7 +26,7 @@ struct model_run {
 
 struct compare {
     struct brc_context *ctx;
-    const struct brc_compare_options *order;
+    const struct brc_compare_options *options;
     struct brc_progress progress;
     int n, n_started;
     struct model_run run[MAX_RUNS];
@@ -39,14 +42,14 @@ static int add_model(struct compare *c, const struct brc_model *model)
     run->model = model;
     snprintf(c->child[c->n].name, sizeof c->child[c->n].name, "%s", model->name);
     c->n++;
-    return brc_folder_path(c->ctx, c->order->dir, model->name, run->dir);
+    return brc_folder_path(c->ctx, c->options->dir, model->name, run->dir);
 }
 
 static int choose_models(struct compare *c)
 {
     const struct brc_model *model[MAX_RUNS];
     int n;
-    BRC_TRY(brc_case_models(c->ctx, c->order->run_case, model, MAX_RUNS, &n));
+    BRC_TRY(brc_case_models(c->ctx, c->options->run_case, model, MAX_RUNS, &n));
     brc_children_init(c->child, n);
     for (int i = 0; i < n; i++)
         BRC_TRY(add_model(c, model[i]));
@@ -57,13 +60,13 @@ static int choose_models(struct compare *c)
  * folder is touched. */
 static int try_models(const struct compare *c)
 {
-    const struct brc_case *run_case = c->order->run_case;
+    const struct brc_case *run_case = c->options->run_case;
     for (int i = 0; i < c->n; i++) {
         struct brc_sim sim;
         const struct brc_model *model = c->run[i].model;
         struct brc_test test = brc_case_test(run_case);
         BRC_TRY(brc_sim_create(c->ctx, &sim, model, brc_case_params(run_case, model),
-                               c->order->specimen, &test, &run_case->run));
+                               c->options->specimen, &test, &run_case->run));
         brc_sim_free(&sim);
     }
     return 0;
@@ -75,8 +78,8 @@ static int run_model(struct brc_context *ctx, const void *user, struct brc_progr
                      struct brc_summary *out)
 {
     const struct model_run *run = user;
-    const struct brc_compare_options *o = run->compare->order;
-    const struct brc_run_options order = {
+    const struct brc_compare_options *o = run->compare->options;
+    const struct brc_run_options options = {
         .run_case = o->run_case,
         .model = run->model,
         .specimen = o->specimen,
@@ -85,7 +88,7 @@ static int run_model(struct brc_context *ctx, const void *user, struct brc_progr
         .is_forced = o->is_forced,
         .progress = progress,
     };
-    return brc_run(ctx, &order, out);
+    return brc_run(ctx, &options, out);
 }
 
 static int run_all(struct compare *c)
@@ -116,20 +119,20 @@ static int fail_interrupted(struct compare *c)
 {
     char begun[BRC_NAMES_SIZE] = "";
     for (int i = 0; i < c->n; i++) {
-        bool was_begun = c->order->is_resumed && brc_run_has_begun(c->run[i].dir);
+        bool was_begun = c->options->is_resumed && brc_run_has_begun(c->run[i].dir);
         bool has_ended = i < c->n_started && c->child[i].outcome.code != BRC_ERR_NOT_BEGUN;
         if (was_begun || has_ended)
             brc_names_add(begun, sizeof begun, c->child[i].name);
     }
     if (!*begun)
         BRC_FAIL(c->ctx, BRC_ERR_NOT_BEGUN,
-                 "interrupted before the first step; nothing was saved in %s", c->order->dir);
-    BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; saved in %s: %s", c->order->dir, begun);
+                 "interrupted before the first step; nothing was saved in %s", c->options->dir);
+    BRC_FAIL(c->ctx, BRC_ERR_INTERRUPTED, "interrupted; saved in %s: %s", c->options->dir, begun);
 }
 
 /* The first failure counts; an interruption counts less than a failure. Runs whose energy does not
  * add up have results to show. */
-static int judge(struct compare *c)
+static int check_outcomes(struct compare *c)
 {
     const struct brc_child *worst = NULL;
     for (int i = 0; i < c->n; i++) {
@@ -144,7 +147,7 @@ static int judge(struct compare *c)
     return worst || c->n_started < c->n ? fail_interrupted(c) : 0;
 }
 
-static int judge_energy(const struct compare *c)
+static int check_energy(const struct compare *c)
 {
     for (int i = 0; i < c->n; i++)
         if (c->child[i].outcome.code == BRC_ERR_ENERGY)
@@ -162,20 +165,20 @@ static int write_table(struct compare *c)
         summary[i] = &c->child[i].outcome.summary;
     brc_compare_table(stdout, summary, c->n);
     fflush(stdout);
-    BRC_TRY(brc_text_file_begin(c->ctx, &file, c->order->dir, "compare.txt"));
+    BRC_TRY(brc_text_file_begin(c->ctx, &file, c->options->dir, "compare.txt"));
     brc_compare_table(file.out, summary, c->n);
     return brc_text_file_end(c->ctx, &file);
 }
 
 static int draw(struct compare *c)
 {
-    const struct brc_case *run_case = c->order->run_case;
+    const struct brc_case *run_case = c->options->run_case;
     struct brc_plot_runs runs = {.title = run_case->file.head.title,
                                  .view = brc_rigs_at(run_case->test.kind)->view,
                                  .n = c->n};
     for (int i = 0; i < c->n; i++)
         runs.label[i] = runs.folder[i] = c->run[i].model->name;
-    return run_case->output.plots ? brc_plot_draw(c->ctx, c->order->dir, &runs, &run_case->output)
+    return run_case->output.plots ? brc_plot_draw(c->ctx, c->options->dir, &runs, &run_case->output)
                                   : 0;
 }
 
@@ -185,7 +188,7 @@ static int check_folders(const struct compare *c)
 {
     static const char *const names[] = {"compare.txt", "curves.gp", "curves.png", "cracks.gp",
                                         "cracks.png"};
-    const struct brc_compare_options *o = c->order;
+    const struct brc_compare_options *o = c->options;
     bool has_begun = false;
     for (int i = 0; i < c->n; i++) {
         bool is_resumed = o->is_resumed && brc_run_has_begun(c->run[i].dir);
@@ -196,14 +199,14 @@ static int check_folders(const struct compare *c)
                              has_begun || o->is_forced);
 }
 
-int brc_compare(struct brc_context *ctx, const struct brc_compare_options *order)
+int brc_compare(struct brc_context *ctx, const struct brc_compare_options *options)
 {
     struct compare *c = brc_alloc(ctx, 1, sizeof *c);
     const char *label[MAX_RUNS];
     if (!c)
         return BRC_ERR_MEMORY;
     c->ctx = ctx;
-    c->order = order;
+    c->options = options;
     int code = choose_models(c);
     for (int i = 0; i < c->n; i++)
         label[i] = c->run[i].model->name;
@@ -212,22 +215,22 @@ int brc_compare(struct brc_context *ctx, const struct brc_compare_options *order
     if (code == 0)
         code = try_models(c);
     if (code == 0)
-        code = brc_folder_make(ctx, order->dir);
+        code = brc_folder_make(ctx, options->dir);
     if (code == 0) {
-        brc_progress_begin(&c->progress, stderr, label, c->n, order->is_quiet);
+        brc_progress_begin(&c->progress, stderr, label, c->n, options->is_quiet);
         code = run_all(c);
         brc_progress_end(&c->progress);
     }
     if (code != 0)
         brc_children_stop(c->child, c->n);
     if (code == 0)
-        code = judge(c);
+        code = check_outcomes(c);
     if (code == 0)
         code = write_table(c);
     if (code == 0)
         code = draw(c);
     if (code == 0)
-        code = judge_energy(c);
+        code = check_energy(c);
     free(c);
     return code;
 }

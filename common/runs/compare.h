@@ -16,7 +16,7 @@ struct brc_compare_options {
 /* Runs all models of the case, as many at a time as there are processors; prints the table and
  * writes it to dir/compare.txt, and draws both models' curves and cracks. Start no MPI before: the
  * models run in forked processes. */
-int brc_compare(struct brc_context *ctx, const struct brc_compare_options *order);
+int brc_compare(struct brc_context *ctx, const struct brc_compare_options *options);
 
 /* A unit to show a value in. */
 struct brc_shown {

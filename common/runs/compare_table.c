@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table for readers: units by the size of the values, one for a row, so that columns compare.
+ */
 #include "common/runs/compare.h"
 
 #include <inttypes.h>

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which runs are missing, where they run, and what becomes of their results. The record is written
+ * as each run ends; a run is known by a hash of all its parameters, so that settings that are the
+ * same run share it. A run that its setting has spoilt counts as done, without a value. */
 #include "common/runs/converge.h"
 
 #include "common/base/signals.h"
@@ -22,7 +25,7 @@ enum { MAX_JOBS = BRC_PROGRESS_MAX_RUNS };
 
 /* A run that a child does. */
 struct task {
-    const struct brc_converge_options *order;
+    const struct brc_converge_options *options;
     struct brc_converge_model *model;
     struct brc_converge_setting *setting;
     int seed; /* number of the specimen */
@@ -43,7 +46,7 @@ struct ladder {
 
 /* ---- what can be refused ------------------------------------------------------------------- */
 
-static int check_order(struct brc_context *ctx, const struct brc_converge_options *o)
+static int check_options(struct brc_context *ctx, const struct brc_converge_options *o)
 {
     const struct brc_specimen_params *p = &o->run_case->specimen;
     bool is_given = p->grains == BRC_GRAINS_POINTS || p->grains == BRC_GRAINS_TESS;
@@ -64,21 +67,21 @@ static int find_observable(struct brc_context *ctx, struct brc_converge_study *s
 {
     char all[BRC_NAMES_SIZE] = "";
     for (int i = 0; i < study->n_results; i++) {
-        if (strcmp(study->results[i].name, study->order->observable) == 0) {
+        if (strcmp(study->results[i].name, study->options->observable) == 0) {
             study->observable = i;
             return 0;
         }
         brc_names_add(all, sizeof all, study->results[i].name);
     }
     BRC_FAIL(ctx, BRC_ERR_USAGE, "--observable: this test does not measure '%.60s'; there are: %s",
-             study->order->observable, all);
+             study->options->observable, all);
 }
 
 /* Builds the model once and drops it: what it refuses ends all, and its rates are filled in. */
 static int try_model(struct ladder *l, const struct brc_specimen *specimen,
                      struct brc_converge_model *m)
 {
-    const struct brc_case *run_case = l->study.order->run_case;
+    const struct brc_case *run_case = l->study.options->run_case;
     struct brc_sim sim;
     struct brc_test test = brc_case_test(run_case);
     BRC_TRY(brc_sim_create(l->ctx, &sim, m->model, brc_case_params(run_case, m->model), specimen,
@@ -93,7 +96,7 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
 
 static int choose_models(struct ladder *l)
 {
-    const struct brc_converge_options *o = l->study.order;
+    const struct brc_converge_options *o = l->study.options;
     const struct brc_model *model[BRC_CONVERGE_MAX_MODELS];
     l->study.n_models = 1;
     if (o->model)
@@ -110,7 +113,7 @@ static int try_models(struct ladder *l)
 {
     struct brc_specimen specimen = {0};
     struct brc_converge_study *study = &l->study;
-    int code = brc_specimen_create(l->ctx, &study->order->run_case->specimen, &specimen);
+    int code = brc_specimen_create(l->ctx, &study->options->run_case->specimen, &specimen);
     for (int i = 0; i < study->n_models && code == 0; i++)
         code = try_model(l, &specimen, &study->model[i]);
     l->n_grains = specimen.facets.n_cells;
@@ -123,7 +126,7 @@ static int check_folder(const struct ladder *l)
 {
     static const char *const names[] = {"converge_runs.csv", "converge.txt", "converge.csv",
                                         "converge.gp",       "converge.png", "converge_unfinished"};
-    const struct brc_converge_options *o = l->study.order;
+    const struct brc_converge_options *o = l->study.options;
     bool may_go_on = o->is_resumed && brc_folder_has(o->dir, "converge_runs.csv");
     return brc_run_check_own(l->ctx, o->dir, o->run_case, names, sizeof names / sizeof names[0],
                              may_go_on || o->is_forced);
@@ -133,8 +136,8 @@ static int check_folder(const struct ladder *l)
 static int prepare(struct ladder *l)
 {
     struct brc_converge_study *study = &l->study;
-    const struct brc_converge_options *o = study->order;
-    BRC_TRY(check_order(l->ctx, o));
+    const struct brc_converge_options *o = study->options;
+    BRC_TRY(check_options(l->ctx, o));
     BRC_TRY(choose_models(l));
     BRC_TRY(brc_converge_read_axes(l->ctx, o, study->model, study->n_models, &l->axes));
     BRC_TRY(check_folder(l));
@@ -163,32 +166,32 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
     struct brc_specimen specimen = {0};
     struct brc_case run_case;
     bool has_begun = brc_run_has_begun(t->dir);
-    bool goes_on = t->order->is_resumed && has_begun && brc_folder_has(t->dir, "state.h5");
-    int code = brc_converge_case(ctx, t->order->run_case, t->setting, t->seed, &run_case);
+    bool goes_on = t->options->is_resumed && has_begun && brc_folder_has(t->dir, "state.h5");
+    int code = brc_converge_case(ctx, t->options->run_case, t->setting, t->seed, &run_case);
     if (code == 0)
         code = brc_specimen_create(ctx, &run_case.specimen, &specimen);
-    const struct brc_run_options order = {.run_case = &run_case,
-                                          .model = t->model->model,
-                                          .specimen = &specimen,
-                                          .dir = t->dir,
-                                          .is_resumed = goes_on,
-                                          .is_forced = has_begun && !goes_on,
-                                          .progress = progress};
+    const struct brc_run_options options = {.run_case = &run_case,
+                                            .model = t->model->model,
+                                            .specimen = &specimen,
+                                            .dir = t->dir,
+                                            .is_resumed = goes_on,
+                                            .is_forced = has_begun && !goes_on,
+                                            .progress = progress};
     if (code == 0)
-        code = check_place(ctx, &order);
+        code = check_place(ctx, &options);
     if (code == 0)
-        code = brc_run(ctx, &order, out);
+        code = brc_run(ctx, &options, out);
     brc_specimen_free(&specimen);
     brc_case_free(&run_case);
     return code;
 }
 
-static void tell(const struct ladder *l, const struct task *t, const struct brc_converge_run *run,
-                 const char *message)
+static void log_run(const struct ladder *l, const struct task *t,
+                    const struct brc_converge_run *run, const char *message)
 {
     const struct brc_result *what = &l->study.results[l->study.observable];
     char left[32], value[64];
-    brc_progress_duration(l->weight_left / l->study.order->jobs, left, sizeof left);
+    brc_progress_duration(l->weight_left / l->study.options->jobs, left, sizeof left);
     if (isfinite(run->result[l->study.observable]))
         snprintf(value, sizeof value, "%s %.4g %s", what->name, run->result[l->study.observable],
                  strcmp(what->unit, "1") == 0 ? "" : what->unit);
@@ -196,7 +199,7 @@ static void tell(const struct ladder *l, const struct task *t, const struct brc_
         snprintf(value, sizeof value, "no %s", what->name);
     brc_log(l->ctx, "%d of %d  %s  %s %s  seed %d  %s%s  %" PRId64 " steps  %.2f s  about %s left",
             l->n_done, l->n_wanted, t->model->model->name, t->setting->axis, t->setting->label,
-            l->study.order->run_case->specimen.seed + t->seed, *message ? "failed: " : "",
+            l->study.options->run_case->specimen.seed + t->seed, *message ? "failed: " : "",
             *message ? message : value, run->steps, run->cpu_s, left);
 }
 
@@ -217,11 +220,11 @@ static double expected(const struct brc_converge_model *m, const struct brc_conv
 static int fail_interrupted(struct ladder *l)
 {
     BRC_FAIL(l->ctx, BRC_ERR_INTERRUPTED, "interrupted; %zu finished runs are kept in %s",
-             l->record.n, l->study.order->dir);
+             l->record.n, l->study.options->dir);
 }
 
 /* A run that its setting has spoilt has no value but is done; other failures end all. */
-static int take_outcome(struct ladder *l, int slot)
+static int read_outcome(struct ladder *l, int slot)
 {
     struct task *t = &l->task[slot];
     const struct brc_outcome *o = &l->child[slot].outcome;
@@ -239,13 +242,13 @@ static int take_outcome(struct ladder *l, int slot)
     for (int i = 0; i < l->study.n_results; i++)
         run->result[i] = o->code ? NAN : o->summary.results[i].value;
     BRC_TRY(brc_converge_record_add(l->ctx, &l->record, t->model->model->name,
-                                    l->study.order->run_case->specimen.seed + t->seed, t->setting,
+                                    l->study.options->run_case->specimen.seed + t->seed, t->setting,
                                     run));
     run->is_done = true;
     BRC_TRY(brc_run_remove(l->ctx, t->dir));
     l->n_done++;
     l->weight_left = fmax(l->weight_left - expected(t->model, t->setting), 0);
-    tell(l, t, run, o->code ? o->message : "");
+    log_run(l, t, run, o->code ? o->message : "");
     return 0;
 }
 
@@ -254,7 +257,7 @@ static int take_outcome(struct ladder *l, int slot)
 /* A run with the same parameters goes on now. */
 static bool is_running(const struct ladder *l, uint64_t key)
 {
-    for (int i = 0; i < l->study.order->jobs; i++)
+    for (int i = 0; i < l->study.options->jobs; i++)
         if (l->child[i].pipe >= 0 && l->task[i].setting->run[l->task[i].seed].key == key)
             return true;
     return false;
@@ -275,27 +278,27 @@ static int start_task(struct ladder *l, int slot, const struct task *task)
 {
     struct task *t = &l->task[slot];
     *t = *task;
-    t->order = l->study.order;
+    t->options = l->study.options;
     uint64_t key = t->setting->run[t->seed].key;
     char name[64];
     snprintf(name, sizeof name, "converge_unfinished/%016" PRIx64, key);
-    BRC_TRY(brc_folder_path(l->ctx, t->order->dir, name, t->dir));
+    BRC_TRY(brc_folder_path(l->ctx, t->options->dir, name, t->dir));
     snprintf(l->child[slot].name, sizeof l->child[slot].name, "%s", t->model->model->name);
     const struct brc_child_work work = {run_task, t};
-    return brc_children_start(l->ctx, l->child, l->study.order->jobs, slot, &work);
+    return brc_children_start(l->ctx, l->child, l->study.options->jobs, slot, &work);
 }
 
 /* Waits a little; takes the outcomes of runs that have ended. */
 static int listen(struct ladder *l)
 {
     bool was_running[MAX_JOBS];
-    int n = l->study.order->jobs;
+    int n = l->study.options->jobs;
     for (int i = 0; i < n; i++)
         was_running[i] = l->child[i].pipe >= 0;
     BRC_TRY(brc_children_listen(l->ctx, l->child, n, NULL));
     for (int i = 0; i < n; i++)
         if (was_running[i] && l->child[i].pipe < 0)
-            BRC_TRY(take_outcome(l, i));
+            BRC_TRY(read_outcome(l, i));
     return 0;
 }
 
@@ -303,7 +306,7 @@ static int listen(struct ladder *l)
 static int offer(struct ladder *l, const struct task *task)
 {
     struct brc_converge_run *run = &task->setting->run[task->seed];
-    int n = l->study.order->jobs;
+    int n = l->study.options->jobs;
     while (is_missing(l, run) && !brc_signals_held()) {
         int slot = 0;
         while (slot < n && l->child[slot].pipe >= 0)
@@ -319,7 +322,7 @@ static int offer(struct ladder *l, const struct task *task)
 static int each_run(struct ladder *l, int first, int end,
                     int (*act)(struct ladder *l, const struct task *task))
 {
-    for (int seed = 0; seed < l->study.order->seeds; seed++)
+    for (int seed = 0; seed < l->study.options->seeds; seed++)
         for (int i = 0; i < l->study.n_models; i++) {
             struct brc_converge_model *m = &l->study.model[i];
             for (int k = first; k < m->n && k < end; k++) {
@@ -355,7 +358,7 @@ static int fill(struct ladder *l, const struct task *task)
 /* Does what is missing of some settings. */
 static int run_phase(struct ladder *l, int first, int end)
 {
-    int n = l->study.order->jobs;
+    int n = l->study.options->jobs;
     l->n_done = l->n_wanted = 0;
     l->weight_left = 0;
     BRC_TRY(each_run(l, first, end, count));
@@ -386,11 +389,11 @@ static int run_all(struct ladder *l)
     for (int i = 0; i < l->study.n_models; i++) {
         struct brc_converge_model *m = &l->study.model[i];
         m->mean_rate = mean_rate(&l->study, m);
-        BRC_TRY(brc_converge_axis_settings(l->ctx, l->study.order, &l->axes, m));
+        BRC_TRY(brc_converge_axis_settings(l->ctx, l->study.options, &l->axes, m));
     }
     BRC_TRY(run_phase(l, 1, BRC_CONVERGE_MAX_SETTINGS));
     char path[BRC_PATH_SIZE];
-    BRC_TRY(brc_folder_path(l->ctx, l->study.order->dir, "converge_unfinished", path));
+    BRC_TRY(brc_folder_path(l->ctx, l->study.options->dir, "converge_unfinished", path));
     rmdir(path);
     return 0;
 }
@@ -409,7 +412,7 @@ static int report(struct ladder *l)
         brc_converge_report_make(study, i, &reports[i]);
     brc_converge_print(stdout, study, reports);
     fflush(stdout);
-    int code = brc_text_file_begin(l->ctx, &file, study->order->dir, "converge.txt");
+    int code = brc_text_file_begin(l->ctx, &file, study->options->dir, "converge.txt");
     if (code == 0) {
         brc_converge_print(file.out, study, reports);
         code = brc_text_file_end(l->ctx, &file);
@@ -422,13 +425,13 @@ static int report(struct ladder *l)
     return code;
 }
 
-int brc_converge(struct brc_context *ctx, const struct brc_converge_options *order)
+int brc_converge(struct brc_context *ctx, const struct brc_converge_options *options)
 {
     struct ladder *l = brc_alloc(ctx, 1, sizeof *l);
     if (!l)
         return BRC_ERR_MEMORY;
     l->ctx = ctx;
-    l->study.order = order;
+    l->study.options = options;
     brc_children_init(l->child, MAX_JOBS);
     int code = prepare(l);
     if (code == 0)

@@ -23,6 +23,6 @@ struct brc_converge_options {
 
 /* Runs what is missing, prints the table and writes converge.txt, converge.csv (a line a setting),
  * converge_runs.csv (a line a run) and the chart. Start no MPI before. */
-int brc_converge(struct brc_context *ctx, const struct brc_converge_options *order);
+int brc_converge(struct brc_context *ctx, const struct brc_converge_options *options);
 
 #endif

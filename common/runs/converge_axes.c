@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One setting at a time is changed: the errors of several together say nothing about what to
+ * choose. The reference takes a finer loading and half the step, and is run coarser in each to tell
+ * its own uncertainty. */
 #include "common/runs/converge_axes.h"
 
 #include "common/runs/case_text.h"
@@ -64,12 +67,12 @@ static int fail_axis(struct brc_context *ctx, const struct brc_converge_model *m
     BRC_FAIL(ctx, BRC_ERR_USAGE, "--axes: no axis '%.60s'; there are: %s", name, all);
 }
 
-int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *order,
+int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *options,
                            const struct brc_converge_model *models, int n_models,
                            struct brc_converge_axes *axes)
 {
     axes->n = 0;
-    for (const char *at = order->axes; *at;) {
+    for (const char *at = options->axes; *at;) {
         size_t length = strcspn(at, ",");
         char name[BRC_CASEFILE_KEY_SIZE];
         snprintf(name, sizeof name, "%.*s", (int)length, at);
@@ -140,14 +143,14 @@ static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
 }
 
 /* Judges the setting on all specimens; *is_good tells whether its values are in range. */
-static int check(struct brc_context *ctx, const struct brc_converge_options *order,
+static int check(struct brc_context *ctx, const struct brc_converge_options *options,
                  const struct brc_converge_model *m, struct brc_converge_setting *s, bool *is_good)
 {
     *is_good = true;
-    for (int i = 0; i < order->seeds && *is_good; i++) {
+    for (int i = 0; i < options->seeds && *is_good; i++) {
         struct brc_context own = BRC_CONTEXT_INIT;
         struct brc_case run_case;
-        int code = brc_converge_case(&own, order->run_case, s, i, &run_case);
+        int code = brc_converge_case(&own, options->run_case, s, i, &run_case);
         if (code == 0)
             code = make_key(&own, &run_case, m, &s->run[i].key);
         brc_case_free(&run_case);
@@ -161,7 +164,7 @@ static int check(struct brc_context *ctx, const struct brc_converge_options *ord
     return 0;
 }
 
-static int add(struct brc_context *ctx, const struct brc_converge_options *order,
+static int add(struct brc_context *ctx, const struct brc_converge_options *options,
                struct brc_converge_model *m, const struct brc_converge_setting *s)
 {
     bool is_good;
@@ -169,7 +172,7 @@ static int add(struct brc_context *ctx, const struct brc_converge_options *order
         BRC_FAIL(ctx, BRC_ERR_INPUT, "more than %d settings of %s; name fewer axes", m->n,
                  m->model->name);
     m->setting[m->n] = *s;
-    BRC_TRY(check(ctx, order, m, &m->setting[m->n], &is_good));
+    BRC_TRY(check(ctx, options, m, &m->setting[m->n], &is_good));
     m->n += is_good;
     return 0;
 }
@@ -243,29 +246,29 @@ static double largest_step(const struct brc_run_params *run)
     return run->dt > 0 ? 1 : 0.95 / run->dt_margin;
 }
 
-static int add_step(struct brc_context *ctx, const struct brc_converge_options *order,
+static int add_step(struct brc_context *ctx, const struct brc_converge_options *options,
                     struct brc_converge_model *m)
 {
     static const double factors[] = {0.25, 0.5, 1, 1.41421356, 2};
-    const struct brc_run_params *run = &order->run_case->run;
+    const struct brc_run_params *run = &options->run_case->run;
     for (int i = 0; i < 5; i++) {
         struct brc_converge_setting s = make("step", BRC_CONVERGE_LADDER, factors[i]);
         if (factors[i] > largest_step(run))
             break;
         put_step(&s, run, factors[i]);
-        BRC_TRY(add(ctx, order, m, &s));
+        BRC_TRY(add(ctx, options, m, &s));
     }
     return 0;
 }
 
-static int add_loading(struct brc_context *ctx, const struct brc_converge_options *order,
+static int add_loading(struct brc_context *ctx, const struct brc_converge_options *options,
                        struct brc_converge_model *m)
 {
-    for (int k = 1; k <= COARSEST * order->refine; k *= 2) {
-        double factor = (double)k / order->refine;
+    for (int k = 1; k <= COARSEST * options->refine; k *= 2) {
+        double factor = (double)k / options->refine;
         struct brc_converge_setting s = make("loading", BRC_CONVERGE_LADDER, factor);
         put_target(&s, &m->test, factor);
-        BRC_TRY(add(ctx, order, m, &s));
+        BRC_TRY(add(ctx, options, m, &s));
     }
     return 0;
 }
@@ -279,7 +282,7 @@ static double rounded(double rate)
 }
 
 /* Around the rate of the case, or the mean rate that its adaptive loading has found. */
-static int add_rate(struct brc_context *ctx, const struct brc_converge_options *order,
+static int add_rate(struct brc_context *ctx, const struct brc_converge_options *options,
                     struct brc_converge_model *m)
 {
     bool is_fixed = m->test.loading == BRC_LOADING_FIXED;
@@ -288,18 +291,18 @@ static int add_rate(struct brc_context *ctx, const struct brc_converge_options *
         brc_log(ctx, "%s: no peak was found, so the axis rate is left out", m->model->name);
         return 0;
     }
-    for (int k = 1; k <= COARSEST * order->refine; k *= 2) {
-        double factor = (double)k / order->refine;
+    for (int k = 1; k <= COARSEST * options->refine; k *= 2) {
+        double factor = (double)k / options->refine;
         struct brc_converge_setting s = make("rate", BRC_CONVERGE_LADDER, factor);
         put_rate(&s, factor * base);
-        BRC_TRY(add(ctx, order, m, &s));
+        BRC_TRY(add(ctx, options, m, &s));
     }
     return 0;
 }
 
 /* ---- choices and grains -------------------------------------------------------------------- */
 
-static int add_choice(struct brc_context *ctx, const struct brc_converge_options *order,
+static int add_choice(struct brc_context *ctx, const struct brc_converge_options *options,
                       struct brc_converge_model *m, const char *key)
 {
     const struct brc_param *p = find_choice(m->model, key);
@@ -310,7 +313,7 @@ static int add_choice(struct brc_context *ctx, const struct brc_converge_options
         size_t length = strcspn(at, "|");
         add_line(&s, "%s.%s=%.*s", m->model->name, key, (int)length, at);
         snprintf(s.label, sizeof s.label, "%s=%.*s", key, (int)length, at);
-        BRC_TRY(add(ctx, order, m, &s));
+        BRC_TRY(add(ctx, options, m, &s));
         at += length + (at[length] != '\0');
     }
     return 0;
@@ -339,15 +342,15 @@ static bool put_grains(struct brc_converge_setting *s, const struct brc_specimen
     return true;
 }
 
-static int add_grains(struct brc_context *ctx, const struct brc_converge_options *order,
+static int add_grains(struct brc_context *ctx, const struct brc_converge_options *options,
                       struct brc_converge_model *m)
 {
     static const double factors[] = {0.8, 1, 1.25};
     for (int i = 0; i < 3; i++) {
         struct brc_converge_setting s = make("grains", BRC_CONVERGE_GRAINS, factors[i]);
         s.weight = pow(factors[i], -4); /* as many grains, and as many steps across one */
-        if (put_grains(&s, &order->run_case->specimen, factors[i]))
-            BRC_TRY(add(ctx, order, m, &s));
+        if (put_grains(&s, &options->run_case->specimen, factors[i]))
+            BRC_TRY(add(ctx, options, m, &s));
         else if (i == 0)
             brc_log(ctx, "the grains of this specimen are given, so the axis grains is left out");
     }
@@ -356,10 +359,10 @@ static int add_grains(struct brc_context *ctx, const struct brc_converge_options
 
 /* ---- all of a model ------------------------------------------------------------------------ */
 
-int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *order,
+int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                 struct brc_converge_model *m)
 {
-    double finest = 1.0 / order->refine;
+    double finest = 1.0 / options->refine;
     for (int i = 0; i < BRC_CONVERGE_N_FIXED; i++) {
         struct brc_converge_setting s = make(
             "reference", i == BRC_CONVERGE_AT_CASE ? BRC_CONVERGE_CASE : BRC_CONVERGE_REFERENCE, 1);
@@ -369,7 +372,7 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
         } else {
             double factor = i == BRC_CONVERGE_AT_LOADING ? 2 * finest : finest;
             double step = i == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
-            put_step(&s, &order->run_case->run, step);
+            put_step(&s, &options->run_case->run, step);
             put_loading(&s, &m->test, factor);
             if (find_choice(m->model, "evaluation"))
                 add_line(&s, "%s.evaluation=literal", m->model->name);
@@ -377,7 +380,7 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
             snprintf(s.label, sizeof s.label, "loading x 1/%g step x %g", 1 / factor, step);
         }
         int before = m->n;
-        BRC_TRY(add(ctx, order, m, &s));
+        BRC_TRY(add(ctx, options, m, &s));
         if (m->n == before)
             BRC_FAIL(ctx, BRC_ERR_INPUT, "the reference %s is out of range; use another --refine",
                      s.label);
@@ -385,7 +388,7 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
     return 0;
 }
 
-int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_options *order,
+int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                const struct brc_converge_axes *axes, struct brc_converge_model *m)
 {
     int (*const act[N_LADDERS])(struct brc_context *, const struct brc_converge_options *,
@@ -395,7 +398,8 @@ int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converg
         int k = 0;
         while (k < N_LADDERS && strcmp(axes->name[i], ladders[k]) != 0)
             k++;
-        BRC_TRY(k < N_LADDERS ? act[k](ctx, order, m) : add_choice(ctx, order, m, axes->name[i]));
+        BRC_TRY(k < N_LADDERS ? act[k](ctx, options, m)
+                              : add_choice(ctx, options, m, axes->name[i]));
     }
     return 0;
 }

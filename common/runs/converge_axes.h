@@ -6,14 +6,14 @@
 #include "common/runs/converge_study.h"
 
 /* The names of a list, or all that the case has; an unknown one is an error that names all. */
-int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *order,
+int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *options,
                            const struct brc_converge_model *models, int n_models,
                            struct brc_converge_axes *axes);
 /* The first settings; then, when the mean rate is known, those of the axes. A value out of a key's
  * range is left out, with a log line. */
-int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *order,
+int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                 struct brc_converge_model *m);
-int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_options *order,
+int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                const struct brc_converge_axes *axes, struct brc_converge_model *m);
 /* The case of a setting on specimen number i; freed by brc_case_free, also after a failure. */
 int brc_converge_case(struct brc_context *ctx, const struct brc_case *run_case,

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Both axes are logarithmic: what counts is by what factor an error falls for a factor of cost. */
 #include "common/runs/converge_plot.h"
 
 #include "common/base/text_file.h"
@@ -35,7 +36,7 @@ static int find_axes(const struct brc_converge_report *r, int first[BRC_CONVERGE
     return n;
 }
 
-/* Choices that are the case as written are no difference. */
+/* Choices that are the case as written show no difference. */
 static bool is_drawn(const struct brc_converge_row *row)
 {
     bool is_choice = row->setting->role == BRC_CONVERGE_CHOICE;
@@ -167,11 +168,11 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
                       const struct brc_converge_report *report)
 {
     static const char *const picture[] = {"converge"};
-    const struct brc_case *run_case = study->order->run_case;
+    const struct brc_case *run_case = study->options->run_case;
     int first[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES], n[BRC_CONVERGE_MAX_MODELS];
     int n_points[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES];
     struct brc_text_file file;
-    BRC_TRY(brc_text_file_begin(ctx, &file, study->order->dir, "converge.gp"));
+    BRC_TRY(brc_text_file_begin(ctx, &file, study->options->dir, "converge.gp"));
     FILE *out = file.out;
     brc_gnuplot_head(out, "converge", 760 * study->n_models, 660, 12);
     fprintf(out,
@@ -193,5 +194,5 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
         put_panel(out, &report[i], i, first[i], n_points[i], n[i]);
     fputs("unset multiplot\n", out);
     BRC_TRY(brc_text_file_end(ctx, &file));
-    return run_case->output.plots ? brc_gnuplot_draw(ctx, study->order->dir, picture, 1) : 0;
+    return run_case->output.plots ? brc_gnuplot_draw(ctx, study->options->dir, picture, 1) : 0;
 }

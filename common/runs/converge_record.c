@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lines end in a digest: a ladder takes days, and a line that a full disk or a stop has cut must be
+ * told from a whole one. The file is locked while it is open. */
 #include "common/runs/converge_record.h"
 
 #include <errno.h>
@@ -135,7 +137,7 @@ static int lock(struct brc_context *ctx, const struct brc_converge_record *r)
 int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record *r,
                              const struct brc_converge_study *study)
 {
-    const struct brc_converge_options *o = study->order;
+    const struct brc_converge_options *o = study->options;
     char header[HEADER_SIZE];
     *r = (struct brc_converge_record){.n_results = study->n_results};
     BRC_TRY(brc_folder_path(ctx, o->dir, "converge_runs.csv", r->path));

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Errors are differences over the same specimens, which cancels most of the scatter between them. A
+ * setting that has lost runs has no error: the mean over the rest would be of other specimens. */
 #include "common/runs/converge_report.h"
 
 #include <math.h>
@@ -14,10 +16,10 @@ static bool is_good(const struct brc_converge_study *study, const struct brc_con
 }
 
 /* Values of the observable over the specimens; NAN where a run has not reached the end. */
-static void take_values(const struct brc_converge_study *study,
+static void copy_values(const struct brc_converge_study *study,
                         const struct brc_converge_setting *s, double *value)
 {
-    for (int i = 0; i < study->order->seeds; i++)
+    for (int i = 0; i < study->options->seeds; i++)
         value[i] = is_good(study, &s->run[i]) ? s->run[i].result[study->observable] : NAN;
 }
 
@@ -26,25 +28,25 @@ static struct brc_converge_error difference(const struct brc_converge_study *stu
                                             const struct brc_converge_setting *b)
 {
     double x[BRC_CONVERGE_MAX_SEEDS], y[BRC_CONVERGE_MAX_SEEDS];
-    take_values(study, a, x);
-    take_values(study, b, y);
-    return brc_converge_error(x, y, study->order->seeds);
+    copy_values(study, a, x);
+    copy_values(study, b, y);
+    return brc_converge_error(x, y, study->options->seeds);
 }
 
 /* A setting that lost runs has no error: the mean of those that are left would be another one. */
-static void judge_row(const struct brc_converge_study *study, const struct brc_converge_model *m,
-                      const struct brc_converge_setting *s, struct brc_converge_row *row)
+static void fill_row(const struct brc_converge_study *study, const struct brc_converge_model *m,
+                     const struct brc_converge_setting *s, struct brc_converge_row *row)
 {
     double value[BRC_CONVERGE_MAX_SEEDS], steps[BRC_CONVERGE_MAX_SEEDS],
         cpu[BRC_CONVERGE_MAX_SEEDS];
     const struct brc_converge_setting *the_case = &m->setting[BRC_CONVERGE_AT_CASE];
     bool is_ladder = s->role <= BRC_CONVERGE_LADDER;
-    int n = study->order->seeds;
+    int n = study->options->seeds;
     *row = (struct brc_converge_row){.setting = s};
     row->is_case = s != the_case && s->run[0].key == the_case->run[0].key;
     row->error =
         difference(study, s, is_ladder ? &m->setting[BRC_CONVERGE_AT_REFERENCE] : the_case);
-    take_values(study, s, value);
+    copy_values(study, s, value);
     for (int i = 0; i < n; i++) {
         steps[i] = (double)s->run[i].steps;
         cpu[i] = s->run[i].cpu_s;
@@ -86,13 +88,13 @@ void brc_converge_report_make(const struct brc_converge_study *study, int model,
     double value[BRC_CONVERGE_MAX_SEEDS];
     *out = (struct brc_converge_report){.model = m, .n = m->n};
     for (int i = 0; i < m->n; i++)
-        judge_row(study, m, &s[i], &out->row[i]);
+        fill_row(study, m, &s[i], &out->row[i]);
     out->step = difference(study, &s[BRC_CONVERGE_AT_STEP], &s[BRC_CONVERGE_AT_REFERENCE]);
     out->loading = difference(study, &s[BRC_CONVERGE_AT_LOADING], &s[BRC_CONVERGE_AT_STEP]);
     out->reference = out->row[BRC_CONVERGE_AT_REFERENCE].value;
     out->uncertainty = brc_converge_uncertainty(&out->loading, &out->step);
-    take_values(study, &s[BRC_CONVERGE_AT_REFERENCE], value);
-    out->scatter = brc_converge_scatter(value, study->order->seeds);
+    copy_values(study, &s[BRC_CONVERGE_AT_REFERENCE], value);
+    out->scatter = brc_converge_scatter(value, study->options->seeds);
     collect_rungs(out);
     for (int k = 0; k < 2; k++) {
         int best = brc_converge_cheapest(out->rung, out->n_rungs, brc_converge_within[k]);

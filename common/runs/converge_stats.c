@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plain sums: at most some hundred values. What is not there is NAN and passes through, so that a
+ * missing run shows as a dash and not as a number. */
 #include "common/runs/converge_stats.h"
 
 #include <math.h>

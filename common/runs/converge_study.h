@@ -61,7 +61,7 @@ struct brc_converge_axes {
 
 /* What all runs measure: names and units of the results. */
 struct brc_converge_study {
-    const struct brc_converge_options *order;
+    const struct brc_converge_options *options;
     struct brc_result results[BRC_MAX_RESULTS]; /* values are of no use */
     int n_results, observable;
     int n_models;

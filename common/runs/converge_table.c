@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Columns hold what a reader decides by: the error, how certain it is, and what it costs. */
 #include "common/runs/converge_table.h"
 
 #include "common/base/text_file.h"
@@ -81,7 +82,7 @@ static void put_rows(FILE *out, const struct brc_converge_study *study,
         if (is_first && *what)
             fprintf(out, "%s\n", what);
         is_first = false;
-        put_row(out, r, i, shown, study->order->seeds);
+        put_row(out, r, i, shown, study->options->seeds);
     }
 }
 
@@ -112,8 +113,8 @@ static void put_head(FILE *out, const struct brc_converge_study *study,
 /* ---- adaptive against fixed loading -------------------------------------------------------- */
 
 /* Rungs of one axis with their steps as cost. */
-static int take_steps(const struct brc_converge_report *r, const char *axis,
-                      struct brc_converge_rung *rung)
+static int collect_steps(const struct brc_converge_report *r, const char *axis,
+                         struct brc_converge_rung *rung)
 {
     int n = 0;
     for (int i = 0; i < r->n_rungs; i++) {
@@ -153,7 +154,7 @@ static void put_level(FILE *out, const struct brc_converge_report *r, double lev
 static void put_loadings(FILE *out, const struct brc_converge_report *r)
 {
     struct brc_converge_rung adaptive[BRC_CONVERGE_MAX_SETTINGS], fixed[BRC_CONVERGE_MAX_SETTINGS];
-    int n = take_steps(r, "loading", adaptive), m = take_steps(r, "rate", fixed);
+    int n = collect_steps(r, "loading", adaptive), m = collect_steps(r, "rate", fixed);
     const struct brc_converge_row *the_case = &r->row[BRC_CONVERGE_AT_CASE];
     if (n == 0 || m == 0)
         return;
@@ -195,8 +196,8 @@ static void put_cheapest(FILE *out, const struct brc_converge_report *r)
 void brc_converge_print(FILE *out, const struct brc_converge_study *study,
                         const struct brc_converge_report *report)
 {
-    const struct brc_case *run_case = study->order->run_case;
-    int seeds = study->order->seeds, first = run_case->specimen.seed;
+    const struct brc_case *run_case = study->options->run_case;
+    int seeds = study->options->seeds, first = run_case->specimen.seed;
     fprintf(out, "%s\n", *run_case->file.head.title ? run_case->file.head.title : run_case->name);
     fprintf(out, "%s, %d specimen%s (seed %d", study->results[study->observable].name, seeds,
             seeds > 1 ? "s" : "", first);
@@ -246,7 +247,7 @@ int brc_converge_csv(struct brc_context *ctx, const struct brc_converge_study *s
 {
     struct brc_text_file file;
     const struct brc_result *seen = &study->results[study->observable];
-    BRC_TRY(brc_text_file_begin(ctx, &file, study->order->dir, "converge.csv"));
+    BRC_TRY(brc_text_file_begin(ctx, &file, study->options->dir, "converge.csv"));
     FILE *out = file.out;
     fprintf(out,
             "model,axis,setting,role,runs [1],%s [%s],error [1],standard_error [1],"

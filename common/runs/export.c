@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables come straight from a state's file; surfaces need the case, from which the specimen is made
+ * anew, as states hold no geometry. */
 #include "common/runs/export.h"
 
 #include "common/base/text_file.h"

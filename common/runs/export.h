@@ -16,10 +16,10 @@ struct brc_export_options {
 };
 
 /* A table of a state, by its name in the file ("curve", "pairs/points"). */
-int brc_export_table(struct brc_context *ctx, const struct brc_export_options *order,
+int brc_export_table(struct brc_context *ctx, const struct brc_export_options *options,
                      const char *table);
 /* "stl" or "tess". */
-int brc_export_format(struct brc_context *ctx, const struct brc_export_options *order,
+int brc_export_format(struct brc_context *ctx, const struct brc_export_options *options,
                       const char *format);
 
 /* Surfaces of the fragments, one solid each, closed: inner facets are left out, and a vertex of

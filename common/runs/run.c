@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Everything that can be refused is refused before the folder is touched; the kept case is written
+ * first, as it tells whether there is room; results are measured from the state alone, so that a
+ * run that was resumed measures the same. */
 #include "common/runs/run.h"
 
 #include "common/base/folders.h"
@@ -44,7 +47,7 @@ static const struct brc_field count_fields[] = {RUN_COUNTS(BRC_FIELD, BRC_FIELD3
 
 struct run {
     struct brc_context *ctx;
-    const struct brc_run_options *order;
+    const struct brc_run_options *options;
     struct brc_sim sim;
     struct counts counts;
     struct brc_frames frames;
@@ -61,14 +64,14 @@ struct run {
 static int open_log(struct run *r)
 {
     char path[BRC_PATH_SIZE];
-    BRC_TRY(brc_folder_path(r->ctx, r->order->dir, "log", path));
+    BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "log", path));
     r->log = fopen(path, "a");
     if (!r->log)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     if (fcntl(fileno(r->log), F_SETLK, &lock) != 0)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
-                 r->order->dir);
+                 r->options->dir);
     return 0;
 }
 
@@ -76,7 +79,7 @@ static int open_log(struct run *r)
  */
 static int replace_old(struct run *r)
 {
-    const struct brc_run_options *o = r->order;
+    const struct brc_run_options *o = r->options;
     BRC_TRY(brc_run_keep_case(r->ctx, o->dir, o->run_case, r->case_text, true));
     BRC_TRY(brc_run_remove_results(r->ctx, o->dir));
     if (ftruncate(fileno(r->log), 0) != 0)
@@ -84,10 +87,10 @@ static int replace_old(struct run *r)
     return 0;
 }
 
-static void note(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void log_line(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A line of the log. */
-static void note(struct run *r, const char *format, ...)
+static void log_line(struct run *r, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -106,7 +109,7 @@ static double cpu_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void take_times(struct run *r)
+static void add_times(struct run *r)
 {
     double cpu = cpu_now(), wall = brc_progress_clock();
     r->counts.cpu_s += cpu - r->cpu_before;
@@ -125,7 +128,7 @@ struct extra {
 
 static void make_extra(struct run *r, struct extra *e)
 {
-    const struct brc_case *run_case = r->order->run_case;
+    const struct brc_case *run_case = r->options->run_case;
     *e = (struct extra){.texts = {{"case", r->case_text},
                                   {"case_name", run_case->name},
                                   {"parameters", r->parameters},
@@ -146,14 +149,14 @@ static int save(struct run *r)
 {
     char path[BRC_PATH_SIZE];
     struct extra extra;
-    take_times(r);
+    add_times(r);
     make_extra(r, &extra);
-    BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->order->dir, &extra.h5));
-    BRC_TRY(brc_folder_path(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->options->dir, &extra.h5));
+    BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "state.h5", path));
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
-    BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->order->dir));
+    BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->options->dir));
     /* limits of a run that goes on may have changed: so does the case, with the state */
-    BRC_TRY(brc_run_keep_case(r->ctx, r->order->dir, r->order->run_case, r->case_text, false));
+    BRC_TRY(brc_run_keep_case(r->ctx, r->options->dir, r->options->run_case, r->case_text, false));
     r->saved_at = brc_progress_clock();
     return 0;
 }
@@ -164,11 +167,11 @@ static int check_model(struct run *r, const char *path)
     char *saved;
     int code = 0;
     BRC_TRY(brc_h5_read_text(r->ctx, path, "model", &saved));
-    if (strcmp(saved, r->order->model->name) != 0)
+    if (strcmp(saved, r->options->model->name) != 0)
         code = brc_error_set(r->ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
                              "%s is a state of the model %s, not %s; choose it with --model, or "
                              "another folder with -o",
-                             path, saved, r->order->model->name);
+                             path, saved, r->options->model->name);
     free(saved);
     return code;
 }
@@ -178,31 +181,31 @@ static int load(struct run *r)
     char path[BRC_PATH_SIZE], *saved;
     struct extra extra;
     make_extra(r, &extra);
-    BRC_TRY(brc_folder_path(r->ctx, r->order->dir, "state.h5", path));
+    BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "state.h5", path));
     BRC_TRY(check_model(r, path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
     int code = brc_case_same(r->ctx, saved, r->parameters);
     free(saved);
     BRC_TRY(code);
     BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra.h5));
-    return brc_frames_sweep(r->ctx, &r->frames, r->order->dir);
+    return brc_frames_sweep(r->ctx, &r->frames, r->options->dir);
 }
 
-static int take_frames(struct run *r)
+static int update_frames(struct run *r)
 {
-    const struct brc_output_params *output = &r->order->run_case->output;
+    const struct brc_output_params *output = &r->options->run_case->output;
     struct extra extra;
     if (!brc_frames_are_on(output))
         return 0;
     make_extra(r, &extra);
-    return brc_frames_take(r->ctx, &r->frames, r->order->dir, output, &r->sim, &extra.h5);
+    return brc_frames_update(r->ctx, &r->frames, r->options->dir, output, &r->sim, &extra.h5);
 }
 
 static int write_last_frame(struct run *r)
 {
     struct extra extra;
     make_extra(r, &extra);
-    return brc_frames_write(r->ctx, &r->frames, r->order->dir, &r->sim, &extra.h5);
+    return brc_frames_write(r->ctx, &r->frames, r->options->dir, &r->sim, &extra.h5);
 }
 
 /* ---- step loop ----------------------------------------------------------------------------- */
@@ -227,7 +230,7 @@ static void report(struct run *r, bool is_done, bool is_stopped)
                                       .broken = (int64_t)r->sim.events.table.n,
                                       .is_done = is_done,
                                       .is_stopped = is_stopped};
-    brc_progress_update(r->order->progress, r->order->progress_run, &now);
+    brc_progress_update(r->options->progress, r->options->progress_run, &now);
 }
 
 /* Why the run is over, NULL while it is not. */
@@ -255,7 +258,7 @@ static int end_loop(struct run *r)
 {
     BRC_TRY(save(r));
     bool has_last =
-        brc_frames_are_on(&r->order->run_case->output) && strcmp(r->ended_by, "signal") != 0;
+        brc_frames_are_on(&r->options->run_case->output) && strcmp(r->ended_by, "signal") != 0;
     return has_last ? write_last_frame(r) : 0;
 }
 
@@ -267,11 +270,11 @@ static int step_loop(struct run *r)
     while (!(r->ended_by = ended_by(sim))) {
         if (r->counts.n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
             r->counts.n_active = (int64_t)(count_active(&sim->pairs) + count_active(&sim->platens));
-        BRC_TRY(take_frames(r));
+        BRC_TRY(update_frames(r));
         BRC_TRY(brc_sim_step(sim));
         BRC_TRY(brc_blowup_energy(sim));
         r->counts.contact_steps += (double)r->counts.n_active;
-        if (brc_progress_is_due(r->order->progress))
+        if (brc_progress_is_due(r->options->progress))
             report(r, false, false);
         if (save_is_due(r))
             BRC_TRY(save(r));
@@ -318,7 +321,7 @@ static double rounding_energy(const struct brc_sim *sim)
 static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
-    const struct brc_case *run_case = r->order->run_case;
+    const struct brc_case *run_case = r->options->run_case;
     struct brc_result result[BRC_MAX_RESULTS];
     struct brc_fragments fragments;
     double stored[3];
@@ -366,7 +369,7 @@ static int measure(const struct run *r, struct brc_summary *s)
 
 static int write_tables(struct run *r)
 {
-    const char *dir = r->order->dir;
+    const char *dir = r->options->dir;
     BRC_TRY(
         brc_output_csv(r->ctx, dir, "curve.csv", &r->sim.rig.curve.table, &r->sim.rig.curve.own));
     return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table, NULL);
@@ -374,17 +377,17 @@ static int write_tables(struct run *r)
 
 static int draw(struct run *r)
 {
-    const struct brc_case *run_case = r->order->run_case;
+    const struct brc_case *run_case = r->options->run_case;
     struct brc_plot_runs runs = {.title = run_case->file.head.title,
                                  .view = brc_rigs_at(run_case->test.kind)->view,
                                  .n = 1,
                                  .label = {r->sim.model.name},
                                  .folder = {"."}};
-    BRC_TRY(brc_plot_broken(r->ctx, r->order->dir, &r->sim));
-    BRC_TRY(brc_plot_cracks(r->ctx, r->order->dir, &r->sim, &run_case->output));
+    BRC_TRY(brc_plot_broken(r->ctx, r->options->dir, &r->sim));
+    BRC_TRY(brc_plot_cracks(r->ctx, r->options->dir, &r->sim, &run_case->output));
     bool has_moved = r->sim.step > 0; /* else there is nothing to see */
     return has_moved && run_case->output.plots
-               ? brc_plot_draw(r->ctx, r->order->dir, &runs, &run_case->output)
+               ? brc_plot_draw(r->ctx, r->options->dir, &runs, &run_case->output)
                : 0;
 }
 
@@ -393,37 +396,38 @@ static int write_results(struct run *r, struct brc_summary *out)
     char energy[512];
     BRC_TRY(measure(r, out));
     BRC_TRY(write_tables(r));
-    BRC_TRY(brc_output_summary(r->ctx, r->order->dir, "summary.json", out));
+    BRC_TRY(brc_output_summary(r->ctx, r->options->dir, "summary.json", out));
     for (int i = 0; i < out->n_results; i++)
         if (out->results[i].note)
-            note(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
+            log_line(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
     if (*brc_output_energy(out, energy, sizeof energy))
-        note(r, "%s", energy);
-    note(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by, out->steps,
-         out->state_hash);
+        log_line(r, "%s", energy);
+    log_line(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by,
+             out->steps, out->state_hash);
     return draw(r);
 }
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
-static void note_header(struct run *r)
+static void log_header(struct run *r)
 {
     char description[DESCRIPTION_SIZE] = "";
-    const struct brc_facets *f = &r->order->specimen->facets;
+    const struct brc_facets *f = &r->options->specimen->facets;
     r->sim.model.describe(&r->sim, r->sim.state, description, sizeof description);
-    note(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__, r->order->run_case->name);
-    note(r, "model %s: %s", r->sim.model.name, r->sim.model.citation);
+    log_line(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__,
+             r->options->run_case->name);
+    log_line(r, "model %s: %s", r->sim.model.name, r->sim.model.citation);
     if (*description)
-        note(r, "%s", description);
-    note(r, "%zu grains, %zu facets, %zu pairs, %zu platen contacts", f->n_cells, f->n_facets,
-         r->sim.pairs.n, r->sim.platens.n);
-    note(r, "%s", r->parameters);
-    note(r, "case.yaml: digest %016" PRIx64, brc_run_case_digest(r->case_text));
+        log_line(r, "%s", description);
+    log_line(r, "%zu grains, %zu facets, %zu pairs, %zu platen contacts", f->n_cells, f->n_facets,
+             r->sim.pairs.n, r->sim.platens.n);
+    log_line(r, "%s", r->parameters);
+    log_line(r, "case.yaml: digest %016" PRIx64, brc_run_case_digest(r->case_text));
 }
 
 static int check_folder(const struct run *r)
 {
-    const struct brc_run_options *o = r->order;
+    const struct brc_run_options *o = r->options;
     return brc_run_check_folder(r->ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
 }
 
@@ -436,14 +440,14 @@ static int close_log(struct run *r, int code)
     has_failed = fclose(r->log) != 0 || has_failed;
     if (has_failed && code == 0)
         BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s/log; is the disk full? The results are there",
-                 r->order->dir);
+                 r->options->dir);
     return code;
 }
 
 /* Everything that can be refused is refused before the folder is touched. */
 static int prepare(struct run *r)
 {
-    const struct brc_run_options *o = r->order;
+    const struct brc_run_options *o = r->options;
     BRC_TRY(check_folder(r));
     r->parameters = brc_case_text(r->ctx, o->run_case, o->model);
     if (!r->parameters)
@@ -462,11 +466,11 @@ static int prepare(struct run *r)
     BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
     bool has_state = o->is_resumed && brc_folder_has(o->dir, "state.h5");
     BRC_TRY(has_state ? load(r) : replace_old(r));
-    note_header(r);
+    log_header(r);
     if (has_state)
-        note(r, "resumed at step %" PRId64, r->sim.step);
+        log_line(r, "resumed at step %" PRId64, r->sim.step);
     else if (o->is_resumed)
-        note(r, "nothing was saved before the stop: started anew");
+        log_line(r, "nothing was saved before the stop: started anew");
     return 0;
 }
 
@@ -475,32 +479,32 @@ static int prepare(struct run *r)
 static void keep_traces(struct run *r)
 {
     struct brc_context quiet = BRC_CONTEXT_INIT, *ctx = r->ctx;
-    note(r, "failed at step %" PRId64 ": %s", r->sim.step, ctx->message);
+    log_line(r, "failed at step %" PRId64 ": %s", r->sim.step, ctx->message);
     if (ctx->code == BRC_ERR_IO)
         return;
     r->ctx = &quiet;
     if (write_tables(r) != 0)
-        note(r, "the curves could not be written either: %s", quiet.message);
+        log_line(r, "the curves could not be written either: %s", quiet.message);
     r->ctx = ctx;
 }
 
 /* Results are there whatever the energy says. */
-static int judge_energy(const struct run *r, const struct brc_summary *s)
+static int check_energy(const struct run *r, const struct brc_summary *s)
 {
     char text[512];
     brc_output_energy(s, text, sizeof text);
     if (s->energy_check == BRC_ENERGY_WRONG && strcmp(r->ended_by, "signal") != 0)
-        BRC_FAIL(r->ctx, BRC_ERR_ENERGY, "%s; results are in %s", text, r->order->dir);
+        BRC_FAIL(r->ctx, BRC_ERR_ENERGY, "%s; results are in %s", text, r->options->dir);
     if (*text)
         brc_log(r->ctx, "warning: %s", text);
     return 0;
 }
 
-int brc_run(struct brc_context *ctx, const struct brc_run_options *order, struct brc_summary *out)
+int brc_run(struct brc_context *ctx, const struct brc_run_options *options, struct brc_summary *out)
 {
-    struct run r = {.ctx = ctx, .order = order};
+    struct run r = {.ctx = ctx, .options = options};
     brc_frames_init(&r.frames);
-    snprintf(r.seed, sizeof r.seed, "%d", order->run_case->specimen.seed);
+    snprintf(r.seed, sizeof r.seed, "%d", options->run_case->specimen.seed);
     bool is_stopped = false;
     int code = prepare(&r);
     if (code == 0) {
@@ -514,11 +518,11 @@ int brc_run(struct brc_context *ctx, const struct brc_run_options *order, struct
         report(&r, true, is_stopped || code != 0);
     }
     if (code == 0)
-        code = judge_energy(&r, out);
+        code = check_energy(&r, out);
     if (is_stopped)
         code = brc_error_set(ctx, BRC_ERR_INTERRUPTED, __FILE__, __LINE__,
                              "interrupted at step %" PRId64 "; the state is saved in %s",
-                             r.sim.step, order->dir);
+                             r.sim.step, options->dir);
     brc_sim_free(&r.sim);
     brc_frames_free(&r.frames);
     free(r.case_text);

@@ -21,7 +21,8 @@ struct brc_run_options {
  * broken.csv, summary.json, and the plots. A signal that was held (brc_signals_hold) saves the
  * state and ends in BRC_ERR_INTERRUPTED, before the first step in BRC_ERR_NOT_BEGUN; curves are
  * written after any failure of a started run. */
-int brc_run(struct brc_context *ctx, const struct brc_run_options *order, struct brc_summary *out);
+int brc_run(struct brc_context *ctx, const struct brc_run_options *options,
+            struct brc_summary *out);
 
 /* A run has been started in dir, by its log. */
 bool brc_run_has_begun(const char *dir);

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Clipping decides by vertex and cuts by edge. The cut edges are sorted and each gets one new
+ * vertex, so two cells that share an edge get the same vertex, bit for bit, and no crack opens
+ * between them. */
 #include "common/specimen/cell_complex.h"
 
+#include "common/base/invariant.h"
 #include "common/base/grow.h"
 #include "common/geometry/vec.h"
 
@@ -58,6 +62,9 @@ int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex
 int brc_cell_complex_add_facet(struct brc_context *ctx, struct brc_cell_complex *c,
                                const struct brc_cell_complex_facet *facet, const int32_t *loop)
 {
+    for (int32_t k = 0; k < facet->n; k++)
+        BRC_ASSERT(loop[k] >= 0 && (size_t)loop[k] < c->n_vertices);
+    BRC_ASSERT(facet->cell[0] >= 0 && facet->cell[0] < (int32_t)c->n_cells);
     if (facet->n < 3)
         return 0;
     size_t n = (size_t)facet->n;

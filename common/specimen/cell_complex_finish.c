@@ -2,6 +2,7 @@
 /* The last steps of a complex: boundary vertices onto their planes, order, measures. */
 #include "common/specimen/cell_complex.h"
 
+#include "common/base/invariant.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
@@ -219,6 +220,27 @@ static void measure_cell(struct brc_facets *out, size_t cell)
         brc_axpy(out->centre[cell], 1 / volume, moment);
 }
 
+/* What all readers of the facets rely on: each has two cells in ascending order or one and a plane
+ * of the domain, a loop of three vertices or more, and stands in the lists of its cells. That the
+ * cells are closed and convex is geometry, which verify checks in every build. */
+static bool is_consistent(const struct brc_facets *f)
+{
+    bool is_good = f->first[0] == 0 && f->cell_first[0] == 0;
+    for (size_t i = 0; i < f->n_facets; i++) {
+        int32_t low = f->cell[i][0], high = f->cell[i][1];
+        is_good = is_good && low >= 0 && low < (int32_t)f->n_cells && high < (int32_t)f->n_cells &&
+                  (high < 0 || low < high) && f->first[i] + 3 <= f->first[i + 1];
+        for (size_t k = f->first[i]; k < f->first[i + 1]; k++)
+            is_good = is_good && f->loop[k] >= 0 && f->loop[k] < (int32_t)f->n_vertices;
+    }
+    for (size_t i = 0; i < f->n_cells; i++)
+        for (size_t k = f->cell_first[i]; k < f->cell_first[i + 1]; k++) {
+            const int32_t *cell = f->cell[f->cell_facet[k]];
+            is_good = is_good && (cell[0] == (int32_t)i || cell[1] == (int32_t)i);
+        }
+    return is_good;
+}
+
 int brc_cell_complex_finish(struct brc_context *ctx, struct brc_cell_complex *c,
                             struct brc_facets *out)
 {
@@ -236,6 +258,7 @@ int brc_cell_complex_finish(struct brc_context *ctx, struct brc_cell_complex *c,
         list_cells(out);
         for (size_t i = 0; i < out->n_cells; i++)
             measure_cell(out, i);
+        BRC_ASSERT(is_consistent(out));
     }
     free(keys);
     free(number);

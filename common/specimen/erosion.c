@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Facets of a cell that lie in one plane are gathered first and moved as one face: planes that
+ * differ in their last digits would cut slivers off each other. */
 #include "common/specimen/erosion.h"
 
 #include "common/base/grow.h"
@@ -218,7 +220,7 @@ double brc_erosion_inscribed(struct brc_erosion *e, double high)
 {
     double low = 0;
     for (int i = 0; i < BISECTIONS; i++) {
-        /* what fails here is no failure of the caller's */
+        /* what fails here is not a failure of the caller */
         struct brc_context own = BRC_CONTEXT_INIT;
         double middle = 0.5 * (low + high);
         int code = brc_erosion_core(&own, e, middle, e->facets->centre[e->index]);

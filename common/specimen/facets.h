@@ -29,7 +29,7 @@ struct brc_facets {
     /* vertices, shared by all facets and cells that meet there */
     size_t n_vertices;
     double (*vertex)[3]; /* [n_vertices] m */
-    double area_dropped; /* m2, total area of the facets that are no contacts */
+    double area_dropped; /* m2, total area of the facets that are not contacts */
     double precision; /* m, last digit of the vertices in the file that they stem from; 0: none */
 };
 

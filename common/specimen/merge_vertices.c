@@ -334,7 +334,7 @@ static int apply_splits(struct brc_context *ctx, struct merger *w)
 }
 
 /* Notes v as a neighbour of u; a third different one sets near[u][0] = -2. */
-static void note_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
+static void add_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
 {
     if (near[u][0] == -2 || near[u][0] == v || near[u][1] == v)
         return;
@@ -357,8 +357,8 @@ static int drop_middle_vertices(struct brc_context *ctx, struct brc_cell_complex
         for (int32_t i = 0; i < c->facet[f].n; i++) {
             const int32_t *loop = c->loop + c->facet[f].first;
             int32_t u = loop[i], v = loop[i + 1 < c->facet[f].n ? i + 1 : 0];
-            note_neighbour(near, u, v);
-            note_neighbour(near, v, u);
+            add_neighbour(near, u, v);
+            add_neighbour(near, v, u);
         }
     for (size_t f = 0; f < c->n_facets; f++) {
         int32_t *loop = c->loop + c->facet[f].first, n = 0;

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes a tessellation in Neper's format with 17 digits, so that it reads back to the same bits;
+ * reading is in neper_read.c and neper_parse.c. */
 #include "common/specimen/neper.h"
 
 #include "common/geometry/vec.h"

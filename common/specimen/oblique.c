@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A uniform strain along each of some directions is compared with what the same medium without
+ * obliqueness would store: that needs no model and no run, and is known before either. */
 #include "common/specimen/oblique.h"
 
 #include "common/geometry/vec.h"

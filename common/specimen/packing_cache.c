@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A cache that fails is a packing that is made again: no error leaves this file but a log line. The
+ * key holds all that the packing depends on and a version, and the content a hash, since a wrong
+ * packing would go unnoticed. Written under the number of the process and renamed, as several runs
+ * may start at once. */
 #include "common/specimen/packing_cache.h"
 
 #include "common/base/table.h"

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Seeds of a grid or a file. Those that nearly coincide are refused before tessellating: the facet
+ * between them would be a bond thousands of times too stiff, and the step as many times too small.
+ */
 #include "common/specimen/seeds.h"
 
 #include "common/geometry/grid.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From the section `specimen` to cells: domain, seeds, tessellation, and the areas below which
+ * facets carry no contact. What is asked for is bounded before work begins. Knows no model. */
 #include "common/specimen/specimen.h"
 
 #include "common/geometry/hilbert.h"

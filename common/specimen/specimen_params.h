@@ -58,7 +58,7 @@ enum { BRC_MAX_GRAINS = 10000000 };
          "grains=mesh")                                                                            \
     INT(seed, "1", "[0, 2147483647]", "random seed", "grains=packing|grid")                        \
     REAL(min_area_ratio, "1", "1e-4", "[0, 0.1]",                                                  \
-         "facets below this part of the mean area are no contacts",                                \
+         "facets below this part of the mean area are not contacts",                               \
          "grains=packing|grid|points|tess")                                                        \
     FLAG(cache, "on", "keep finished packings on disk (BRECCIA_CACHE, else ~/.cache/breccia)",     \
          "grains=packing", .flags = BRC_PARAM_MAY_CHANGE)

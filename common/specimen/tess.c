@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is done around the diagram that tess_cgal.cpp makes: seeds without a cell are named, and the
+ * length below which vertices are one is raised in steps until the cells pass the checks. The least
+ * length that works is the one that changes the geometry least. */
 #include "common/specimen/tess.h"
 
 #include "common/base/progress.h"

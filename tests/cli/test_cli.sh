@@ -53,7 +53,7 @@ for file in summary.json curve.csv events.csv broken.csv state.h5 case.yaml log;
         { echo "FAILED: no $file"; failures=$((failures + 1)); }
 done
 cmp -s case.yaml "results/case/$model/case.yaml" ||
-    { echo "FAILED: case.yaml is no copy"; failures=$((failures + 1)); }
+    { echo "FAILED: case.yaml is not a copy"; failures=$((failures + 1)); }
 hash=$(grep state_hash "results/case/$model/summary.json")
 expect 3 "already holds results" "$breccia" run case.yaml
 expect 3 "holds no run to resume" "$breccia" run case.yaml -o other --resume

@@ -114,7 +114,7 @@ static size_t run(struct fixture *f, const char *settings, int64_t n, int64_t sa
     fixture_set(f, brc_output_param_list, &p, settings);
     brc_frames_init(frames);
     while (f->sim.step < n && !brc_rigs_done(&f->sim)) {
-        CHECK_OK(&f->ctx, brc_frames_take(&f->ctx, frames, folder, &p, &f->sim, &nothing));
+        CHECK_OK(&f->ctx, brc_frames_update(&f->ctx, frames, folder, &p, &f->sim, &nothing));
         fixture_steps(f, 1);
         if (f->sim.step == save_at) {
             CHECK_OK(&f->ctx, brc_frames_flush(&f->ctx, frames, folder, &nothing));

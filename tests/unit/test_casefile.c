@@ -280,8 +280,8 @@ static void bad_overrides_are_named(void **state)
     check_bad_override("a.b.c.d=1", BRC_ERR_USAGE, "not of the form section.key=value");
     check_bad_override("vgcm..e_bar=1", BRC_ERR_INPUT, "--set: '.e_bar=1' is not a key");
     check_bad_override("=1", BRC_ERR_INPUT, "--set: '=1' is not a key");
-    check_bad_override("vgcm.note=a\nb", BRC_ERR_USAGE, "no one-line UTF-8 text");
-    check_bad_override("vgcm.note=\xff", BRC_ERR_USAGE, "no one-line UTF-8 text");
+    check_bad_override("vgcm.note=a\nb", BRC_ERR_USAGE, "not one line of UTF-8 text");
+    check_bad_override("vgcm.note=\xff", BRC_ERR_USAGE, "not one line of UTF-8 text");
     check_bad_override("breccia=2", BRC_ERR_INPUT, "breccia: ");
     check_bad_override("titel=x", BRC_ERR_INPUT, "--set: titel: unknown key of the top level");
 }

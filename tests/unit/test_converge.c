@@ -133,7 +133,7 @@ static void test_judge(void **state)
     static struct brc_converge_report report;
     static struct brc_case run_case;
     const struct brc_converge_options order = {.run_case = &run_case, .seeds = N_SEEDS};
-    study.order = &order;
+    study.options = &order;
     make_study(&study, settings);
     brc_converge_report_make(&study, 0, &report);
     CHECK_NEAR(report.reference, 150e6, 0, 1e-12);
@@ -177,7 +177,7 @@ static void test_print(void **state)
     const struct brc_converge_options order = {.run_case = &run_case, .seeds = N_SEEDS};
     char *text = NULL;
     size_t size = 0;
-    study.order = &order;
+    study.options = &order;
     make_study(&study, settings);
     brc_converge_report_make(&study, 0, &report);
     FILE *out = open_memstream(&text, &size);

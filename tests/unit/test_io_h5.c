@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* States in HDF5: all that is saved comes back, and a file that differs in any part is refused
+ * before it is read into a simulation. */
 #include "common/output/h5.h"
 #include "common/output/io_h5.h"
 #include "common/output/checksum_header.h"

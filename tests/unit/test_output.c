@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* JSON and CSV as other programs read them, with texts and numbers that break simple writers. */
 #include "common/runs/compare.h"
 #include "tests/near.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scripts of gnuplot: what is drawn, from which data, and that titles stay text. */
 #include "common/output/plot.h"
 #include "tests/fixture.h"
 

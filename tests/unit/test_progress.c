@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bars, plain lines and time left, as a terminal, a file and a pipe get them. */
 #include "common/base/progress.h"
 #include "tests/near.h"
 

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables of every type: rows keep their values through growth and reordering, and the hash sees
+ * each bit of the state and nothing else. */
 #include "common/base/table.h"
 #include "tests/near.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Vectors and rotations against hand values. */
 #include "common/base/brc.h"
 #include "common/geometry/vec.h"
 #include "tests/near.h"
