@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # breccia: `make help` lists the targets. Sources are found by pattern; a folder with a model.c is a
-# contact model. CFG=release|bare|debug|san picks the configuration; release builds into build/.
+# contact model. CFG=release|bare|free|debug|san picks the configuration; release builds into build/.
 
 CFG   ?= release
 BUILD := build$(if $(filter release,$(CFG)),,/$(CFG))
@@ -70,8 +70,10 @@ FLAGS_san     := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer -fsanitize=address,u
 # libFuzzer is clang's; the C++ of the tessellation stays with g++ and is not instrumented
 FLAGS_fuzz    := -O1 -g -DBRC_DEBUG -fno-omit-frame-pointer
 FUZZ_FLAGS    := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+# forces and energies of vgcm added up in whatever order is fastest: what their fixed order costs
+FLAGS_free    := -O2 -g -DBRC_FREE_SUMS
 ifeq ($(FLAGS_$(CFG)),)
-$(error CFG=$(CFG) is unknown; known are release, bare, debug, san and fuzz)
+$(error CFG=$(CFG) is unknown; known are release, bare, free, debug, san and fuzz)
 endif
 ifeq ($(CFG),fuzz)
 CC       := clang
@@ -125,6 +127,7 @@ $(BUILD)/obj/common/rigs/rigs.c.o: $(BUILD)/rig_list.h
 # loops that are compiled for each instruction set
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_release := -O3 -g
 %_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_bare := -O3 -g -DBRC_BARE
+%_base.c.o %_avx2.c.o %_avx512.c.o: FLAGS_free := -O3 -g -DBRC_FREE_SUMS
 
 $(BUILD)/libbreccia.a: $(LIB_OBJECTS) $(BUILD)/sources
 	@echo "ar   $@"
@@ -230,6 +233,7 @@ build/bench/tools: .ci/deps
 	@mkdir -p $(@D); .ci/deps bench $@
 bench: all $(BENCH_PROGRAMS) build/bench/tools ## times of the hot loops, costs of options, the machine's limits
 	@+$(MAKE) --no-print-directory CFG=bare build/bare/tests/bench/bench_options
+	@+$(MAKE) --no-print-directory CFG=free build/free/tests/bench/bench_vgcm
 	@for program in $(BENCH_PROGRAMS); do $$program || exit 1; done
 
 # --- lint: each check leaves a mark, so that only what has changed is checked again ----------------

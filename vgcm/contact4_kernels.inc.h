@@ -1,27 +1,49 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of the loop over contacts (forces_kernels.inc.h) share: four contacts on their way
- * through it, and viscous forces. */
+/* What the parts of the loop over contacts (forces_kernels.inc.h) share: queues, four contacts on
+ * their way through the loop, and the order in which what they exert is added up. Knows contacts by
+ * their numbers in the list alone; which of them follow each other must not be felt in any sum.
+ *
+ * Each body gets the forces of its contacts, and the energies that they book, in ascending order of
+ * (a, b), whatever contacts that exert nothing are listed between: so the bits of a run do not hang
+ * on how a chunk begins, which contacts shared a queue, or how large the skin is. Contacts leave
+ * the queues in another order; what they exert waits in the chunk, in L1, until all of it is done.
+ * A chunk whose contacts are all affine so far adds at once, which is the same order. Rejected: a
+ * pass over all contacts after the loop, as other models have it (3 more columns of 24 bytes a
+ * contact to write and to read back), and atomics or colours, which have no order. BRC_FREE_SUMS
+ * adds everything at once: what bench_vgcm measures the price of the order by. */
 #ifndef VGCM_CONTACT4_KERNELS_H
 #define VGCM_CONTACT4_KERNELS_H
 
 #include "vgcm/contact.h"
 
-/* What the ledger gets, sums side by side [J]. */
-struct vgcm_booked {
-    struct vgcm_energy_lanes points;
-    struct vgcm_energy spheres;
-    brc_lanes affine, viscous; /* stored by affine contacts; dissipated by viscous forces */
-};
+#include <string.h>
 
-/* Contacts of a phase that wait for their turn. A contact that leaves its phase waits once more. */
+#ifdef BRC_FREE_SUMS
+enum { VGCM_FREE_SUMS = 1 };
+#else
+enum { VGCM_FREE_SUMS = 0 };
+#endif
+
+/* Contacts that are done together. 128: what they exert fits the first cache beside their state. */
 enum { VGCM_CHUNK = 128 };
+
+/* Contacts of a phase that wait for their turn. One that leaves its phase waits once more. */
 struct vgcm_queue {
     int n;
     int32_t contact[VGCM_CHUNK];
 };
 
+/* What the contacts of a chunk exert, in the order of the list. */
+enum vgcm_acts { VGCM_NOTHING, VGCM_FORCE, VGCM_FORCE_AND_ENERGY };
+struct vgcm_chunk {
+    size_t begin;
+    bool is_waiting; /* a contact before those to come has yet to be done: nothing adds at once */
+    uint8_t acts[VGCM_CHUNK];
+    double force[VGCM_CHUNK][3 * BRC_LANES]; /* on b; moments on a and b; see vgcm_bodies_add */
+    double energy[VGCM_CHUNK][VGCM_N_ENERGY];
+};
+
 struct vgcm_loop {
-    struct vgcm_booked booked;
     struct brc_sim *sim;
     const struct vgcm_law *law;
     struct brc_contacts *c;
@@ -29,6 +51,7 @@ struct vgcm_loop {
     struct vgcm_points *p;
     size_t ahead; /* the next contacts to be asked for */
     struct vgcm_queue queue[VGCM_N_PHASES];
+    struct vgcm_chunk chunk;
 };
 
 struct vgcm_contact4 {
@@ -37,6 +60,8 @@ struct vgcm_contact4 {
     struct vgcm_motion m;
     brc_lanes u[VGCM_N_MOTION]; /* fields at the end of the step */
     brc_lanes sum[VGCM_N_MOTION];
+    struct vgcm_energy_lanes energy; /* J, of the step */
+    brc_lanes viscous;               /* J, dissipated by viscous forces */
 };
 
 VGCM_INLINE void vgcm_fetch(const void *at, size_t size)
@@ -49,8 +74,8 @@ VGCM_INLINE void vgcm_fetch(const void *at, size_t size)
  * of the queues. What tells where points are is wanted a chunk earlier. Without it a step takes
  * 27 % longer a point at half of the points damaged, 15 % over the whole of bench_vgcm (minima of
  * six runs, 20.0 against 15.8 ns and 14.5 against 12.7 ns). Two more tricks of this kind gave
- * nothing and are gone: to keep the points of damaged contacts together in memory, and to build
- * the loops for AVX-512 too. */
+ * nothing and are gone: to keep the points of damaged contacts together in memory, to sort those
+ * of a chunk by their numbers of points, and to build the loops for AVX-512 too. */
 VGCM_INLINE void vgcm_fetch_ahead(struct vgcm_loop *l)
 {
     const struct brc_contacts *c = l->c;
@@ -79,10 +104,18 @@ VGCM_INLINE void vgcm_fetch_ahead(struct vgcm_loop *l)
     }
 }
 
+/* Nothing is booked yet. */
+VGCM_INLINE void vgcm_contact4_clear(struct vgcm_contact4 *x)
+{
+    x->energy = (struct vgcm_energy_lanes){.bond = brc_lanes_all(0)};
+    x->viscous = brc_lanes_all(0);
+}
+
 /* Takes the last contacts of a queue, four at most. */
 VGCM_INLINE void vgcm_queue_next(struct vgcm_contact4 *x, struct vgcm_queue *q)
 {
     x->live = brc_lanes_first(q->n);
+    vgcm_contact4_clear(x);
     x->index.is_consecutive = false;
     for (int k = 0; k < BRC_LANES; k++)
         x->index.at[k] = q->contact[k < q->n ? q->n - 1 - k : 0];
@@ -111,9 +144,95 @@ VGCM_INLINE void vgcm_contact4_write(const struct vgcm_loop *l, const struct vgc
     vgcm_put(l->c->gap, &x->index, x->u[VGCM_OPEN]);
 }
 
-VGCM_INLINE void vgcm_contact4_apply(const struct vgcm_loop *l, const struct vgcm_contact4 *x)
+/* Adds to the sums of both bodies of contact i: the force on b and the moment on a, each with a
+ * fourth value that rides along (0, and the work stored in the bond, which a gets), the moment on
+ * b.
+ */
+VGCM_INLINE void vgcm_bodies_add(const struct vgcm_loop *l, size_t i, brc_lanes f, brc_lanes ta,
+                                 brc_lanes tb)
 {
-    vgcm_force_apply(&l->sim->bodies, l->c, &x->index, x->live, &x->m, x->sum);
+    double *a = l->sim->bodies.sum[l->c->a[i]], *b = l->sim->bodies.sum[l->c->b[i]];
+    brc_lanes_put(a, brc_lanes_at(a) - f);
+    brc_lanes_put(a + 4, brc_lanes_at(a + 4) + ta);
+    brc_lanes_put(b, brc_lanes_at(b) + f);
+    brc_lanes_put(b + 4, brc_lanes_at(b + 4) + tb);
+}
+
+/* The energies that contact i books, on a. */
+VGCM_INLINE void vgcm_energies_add(const struct vgcm_loop *l, size_t i, brc_lanes first,
+                                   double viscous)
+{
+    const struct vgcm_bodies *columns = l->sim->bodies.model_columns;
+    double *e = columns->energy[l->c->a[i]];
+    brc_lanes_put(e, brc_lanes_at(e) + first);
+    e[VGCM_ENERGY_VISCOUS] += viscous;
+}
+
+/* What four contacts book, but for the work stored in bonds, which rides with the moments. */
+VGCM_INLINE void vgcm_contact4_book(struct vgcm_loop *l, const struct vgcm_contact4 *x)
+{
+    brc_lanes e[] = {x->energy.normal, x->energy.shear, x->energy.damage, x->energy.friction};
+    brc_lanes_transpose(e);
+    for (int k = BRC_LANES - 1; k >= 0; k--) { /* the first of equal contacts is what stays */
+        size_t i = (size_t)x->index.at[k], slot = i - l->chunk.begin;
+        if (VGCM_FREE_SUMS) {
+            if (x->live[k])
+                vgcm_energies_add(l, i, e[k], x->viscous[k]);
+            continue;
+        }
+        brc_lanes_put(l->chunk.energy[slot], e[k]);
+        l->chunk.energy[slot][VGCM_ENERGY_VISCOUS] = x->viscous[k];
+        l->chunk.acts[slot] = VGCM_FORCE_AND_ENERGY;
+    }
+}
+
+/* Hands on what four contacts exert; books: more than work stored in bonds. */
+VGCM_INLINE void vgcm_contact4_apply(struct vgcm_loop *l, const struct vgcm_contact4 *x, bool books)
+{
+    brc_lanes f[BRC_LANES], ta[BRC_LANES], tb[BRC_LANES];
+    vgcm_force_of(f, ta, tb, &x->m, x->sum);
+    vgcm_put3(l->c->f, &x->index, f);
+    f[3] = tb[3] = brc_lanes_all(0);
+    ta[3] = x->energy.bond;
+    brc_lanes_transpose(f);
+    brc_lanes_transpose(ta);
+    brc_lanes_transpose(tb);
+    if (VGCM_FREE_SUMS || !l->chunk.is_waiting) {
+        for (int k = 0; k < BRC_LANES; k++)
+            if (x->index.is_consecutive || x->live[k])
+                vgcm_bodies_add(l, (size_t)x->index.at[k], f[k], ta[k], tb[k]);
+    } else {
+        for (int k = BRC_LANES - 1; k >= 0; k--) {
+            size_t slot = (size_t)x->index.at[k] - l->chunk.begin;
+            brc_lanes_put(l->chunk.force[slot], f[k]);
+            brc_lanes_put(l->chunk.force[slot] + 4, ta[k]);
+            brc_lanes_put(l->chunk.force[slot] + 8, tb[k]);
+            l->chunk.acts[slot] = VGCM_FORCE;
+        }
+    }
+    if (books)
+        vgcm_contact4_book(l, x);
+}
+
+/* Adds what has waited, in the order of the list. The list of those that act comes first: half of
+ * the contacts are loose past the peak, and a jump on each would be foreseen as often as not. */
+static __attribute__((noinline)) void vgcm_chunk_add(struct vgcm_loop *l, size_t end)
+{
+    struct vgcm_chunk *chunk = &l->chunk;
+    uint8_t act[VGCM_CHUNK];
+    size_t n = 0;
+    for (size_t slot = 0; slot < end - chunk->begin; slot++) {
+        act[n] = (uint8_t)slot;
+        n += chunk->acts[slot] != VGCM_NOTHING;
+    }
+    for (size_t k = 0; k < n; k++) {
+        size_t slot = act[k], i = chunk->begin + slot;
+        const double *f = chunk->force[slot], *e = chunk->energy[slot];
+        vgcm_bodies_add(l, i, brc_lanes_at(f), brc_lanes_at(f + 4), brc_lanes_at(f + 8));
+        if (chunk->acts[slot] == VGCM_FORCE_AND_ENERGY)
+            vgcm_energies_add(l, i, brc_lanes_at(e), e[VGCM_ENERGY_VISCOUS]);
+    }
+    memset(chunk->acts, VGCM_NOTHING, sizeof chunk->acts);
 }
 
 /* Least opening of points anywhere within the rims, and the largest. */
@@ -139,8 +258,8 @@ VGCM_INLINE brc_lanes vgcm_viscosity(const struct vgcm_loop *l, const struct vgc
     return c;
 }
 
-/* Adds the viscous part to the generalised forces, and its dissipation to what is booked. */
-VGCM_INLINE void vgcm_contact4_viscous(struct vgcm_loop *l, struct vgcm_contact4 *x, int flags,
+/* Adds the viscous part to the generalised forces, and takes note of its dissipation. */
+VGCM_INLINE void vgcm_contact4_viscous(struct vgcm_loop *l, struct vgcm_contact4 *x,
                                        const brc_lanes viscous[VGCM_N_MOTION])
 {
     brc_lanes old[VGCM_N_MOTION], mean[VGCM_N_MOTION];
@@ -150,8 +269,7 @@ VGCM_INLINE void vgcm_contact4_viscous(struct vgcm_loop *l, struct vgcm_contact4
         x->sum[k] += viscous[k];
     }
     brc_lanes_scatter6(l->f->viscous_force, x->index.at, viscous);
-    if (flags & VGCM_LEDGER)
-        l->booked.viscous += brc_lanes_where(x->live, vgcm_force_work(mean, x->m.du));
+    x->viscous = vgcm_force_work(mean, x->m.du);
 }
 
 #endif

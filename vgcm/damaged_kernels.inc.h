@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contacts that have left the elastic range in the loop over contacts (forces_kernels.inc.h): the
- * law of their points, one point of each of four contacts at a time. */
+ * law of their points. Four contacts side by side, one point of each at a time, and not four points
+ * of one: facets have any number of points, seven in the mean, which would fill lanes badly, and
+ * the sums over a contact's points would have to be made across lanes. May not know in which order
+ * contacts come: a lane's result must not depend on its neighbours. */
 #ifndef VGCM_DAMAGED_KERNELS_H
 #define VGCM_DAMAGED_KERNELS_H
 
@@ -28,7 +31,9 @@ VGCM_INLINE void vgcm_points4_viscous(brc_lanes viscous[VGCM_N_MOTION], brc_lane
                    brc_lanes_where(whole | closed, ft), s, t);
 }
 
-/* Point j of contact i has just broken. */
+/* Point j of contact i has just broken: rare, so that it may be slow, and out of the loop. The
+ * status of the whole contact is looked up anew, as other points may have broken in the same step.
+ */
 static void vgcm_event_add(const struct vgcm_loop *l, size_t i, size_t j)
 {
     const struct brc_contacts *c = l->c;
@@ -93,7 +98,8 @@ VGCM_INLINE void vgcm_points4_begin(const struct vgcm_loop *l, int flags,
     w->force2 = w->s * w->s + w->t * w->t;
 }
 
-/* Writes what has changed of the points' states. */
+/* Most points of a damaged contact do not change in a step: a line that is not written need not go
+ * back to memory. Writes what has changed of the points' states. */
 VGCM_INLINE void vgcm_points4_write(double *const point[BRC_LANES],
                                     const struct vgcm_point_lanes *w, brc_lanes fs, brc_lanes ft,
                                     brc_mask grows, brc_lanes dissipated)
@@ -110,7 +116,7 @@ VGCM_INLINE void vgcm_points4_write(double *const point[BRC_LANES],
 }
 
 /* Points number k of four contacts. Lanes without such a point work on none, which has no area. */
-VGCM_INLINE void vgcm_points4_step(struct vgcm_loop *l, int flags, const struct vgcm_contact4 *x,
+VGCM_INLINE void vgcm_points4_step(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x,
                                    struct vgcm_points4 *q, int32_t k, double none[VGCM_N_POINT])
 {
     double *at[BRC_LANES];
@@ -127,7 +133,7 @@ VGCM_INLINE void vgcm_points4_step(struct vgcm_loop *l, int flags, const struct 
     vgcm_points4_begin(l, flags, x, place, own, du, &w);
     vgcm_lanes_open(l->law, q->bond, flags, &w);
     vgcm_lanes_slide(l->law, q->bond, flags, &w);
-    brc_lanes dissipated = vgcm_lanes_account(l->law, q->bond, flags, area, &w, &l->booked.points);
+    brc_lanes dissipated = vgcm_lanes_account(l->law, q->bond, flags, area, &w, &x->energy);
     brc_lanes fs = w.shear_ratio * w.s, ft = w.shear_ratio * w.t, damage = w.dn + w.ds;
     vgcm_points4_write(at, &w, fs, ft, brc_lanes_less(w.damage_old, damage), dissipated);
     vgcm_force_add(q->force, area * w.normal_force, area * fs, area * ft, s, t);
@@ -149,10 +155,11 @@ VGCM_INLINE void vgcm_points4_sum(struct vgcm_loop *l, int flags, struct vgcm_co
         x->sum[k] = (is_normal ? kn : ks) * q->force[k];
     }
     if (flags & VGCM_VISCOUS)
-        vgcm_contact4_viscous(l, x, flags, q->viscous);
+        vgcm_contact4_viscous(l, x, q->viscous);
 }
 
-/* Contacts that are broken and surely open all over are loose from now on. */
+/* By the same bound that wakes them again, so that no contact goes to and fro without having
+ * closed. Contacts that are broken and surely open all over are loose from now on. */
 VGCM_INLINE void vgcm_contact4_loosen(const struct vgcm_loop *l, const struct vgcm_contact4 *x)
 {
     brc_lanes range[2];
@@ -191,25 +198,8 @@ VGCM_INLINE void vgcm_contact4_damaged(struct vgcm_loop *l, int flags, struct vg
     for (int32_t k = 0; k < q.most; k++)
         vgcm_points4_step(l, flags, x, &q, k, none);
     vgcm_points4_sum(l, flags, x, &q);
-    vgcm_contact4_apply(l, x);
+    vgcm_contact4_apply(l, x, flags & VGCM_LEDGER);
     vgcm_contact4_loosen(l, x);
-}
-
-/* Sorts the contacts by their numbers of points, so that four take as many steps as each of them.
- */
-static void vgcm_queue_sort(struct vgcm_queue *q, const int32_t *np)
-{
-    enum { KEYS = 32 };
-    int32_t sorted[VGCM_CHUNK], start[KEYS + 1] = {0};
-    for (int i = 0; i < q->n; i++)
-        start[1 + (np[q->contact[i]] < KEYS - 1 ? np[q->contact[i]] : KEYS - 1)]++;
-    for (int k = 0; k < KEYS; k++)
-        start[k + 1] += start[k];
-    for (int i = 0; i < q->n; i++)
-        sorted[start[np[q->contact[i]] < KEYS - 1 ? np[q->contact[i]] : KEYS - 1]++] =
-            q->contact[i];
-    for (int i = 0; i < q->n; i++)
-        q->contact[i] = sorted[i];
 }
 
 #endif

@@ -1,8 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Energy, springs and strength left, from the state alone. */
+/* Energy, springs and strength left, from the state alone, and the ledger's terms of a step. Called
+ * through the model's table, seldom but for the ledger, so it is written for one point at a time
+ * and shares only the law with the loops: what the loops book, step by step, is checked against
+ * what stands here (brc_ledger_drift), which would be worth little if both used one piece of code.
+ * It may not know queues, chunks or lanes. */
+#include "common/parallel/sums.h"
 #include "vgcm/contact.h"
 
-/* State of point j of contact i with its forces [N]. */
+#include <string.h>
+
+/* State of point j of contact i with its forces [N]. A facet keeps no opening and no force of its
+ * points: they follow from its six numbers u, as in the loops. */
 static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgcm_bond *bond,
                                   size_t i, size_t j, int flags)
 {
@@ -27,6 +35,7 @@ static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgc
     return q;
 }
 
+/* Without shear stiffness a force has nowhere to be stored; it is 0 then, but 0/0 is not. */
 static double shear_energy(const struct vgcm_bond *bond, double area, const struct vgcm_point *q)
 {
     double k = bond->ks * area;
@@ -41,6 +50,7 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     const struct vgcm_points *p = vgcm_point_columns(c);
     struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
     int flags = vgcm_law_flags(law);
+    /* affine contacts by their area moments: their points keep no state that could be added up */
     if (f->phase[i] == VGCM_AFFINE) {
         brc_lanes u[VGCM_N_MOTION], moment[VGCM_N_MOMENTS];
         for (int k = 0; k < VGCM_N_MOTION; k++) {
@@ -53,6 +63,7 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     }
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         struct vgcm_point q = point_of(c, &bond, i, j, flags);
+        /* what a broken point holds is a contact's, as the ledger books it from then on */
         bool is_bond = vgcm_law_is_whole(law, flags, q.dn, q.ds);
         double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->law[j][VGCM_AREA], &q);
         stored[is_bond ? 0 : 1] += normal;
@@ -85,12 +96,44 @@ void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, d
         add_platen(sim, law, i, stored);
 }
 
+/* Sum of a column of the grains' energies, with a stride of 8: the same whatever the order of the
+ * grains, as the ledger must not hang on it, nor on how grains are shared out. */
+static double total(const struct brc_bodies *b, const double *x)
+{
+    const struct vgcm_bodies *columns = b->model_columns;
+    double sum = 0;
+    for (size_t i = 0; i < b->n_grains; i++)
+        columns->term[i] = x[8 * i];
+#ifdef BRC_FREE_SUMS
+    for (size_t i = 0; i < b->n_grains; i++)
+        sum += columns->term[i];
+#else
+    sum = brc_sum_exact(columns->term, b->n_grains);
+#endif
+    return sum;
+}
+
+void vgcm_energy_book(struct brc_sim *sim)
+{
+    const struct vgcm_bodies *columns = sim->bodies.model_columns;
+    struct brc_ledger *l = &sim->ledger;
+    const double *e = (const double *)columns->energy;
+    l->bond += total(&sim->bodies, (const double *)sim->bodies.sum + 7);
+    l->contact_normal += total(&sim->bodies, e + VGCM_ENERGY_NORMAL);
+    l->contact_shear += total(&sim->bodies, e + VGCM_ENERGY_SHEAR);
+    l->damage += total(&sim->bodies, e + VGCM_ENERGY_DAMAGE);
+    l->friction += total(&sim->bodies, e + VGCM_ENERGY_FRICTION);
+    l->viscous += total(&sim->bodies, e + VGCM_ENERGY_VISCOUS);
+    memset(columns->energy, 0, sim->bodies.n_grains * sizeof *columns->energy);
+}
+
 double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact)
 {
     const struct vgcm_points *p = vgcm_point_columns(c);
     int flags = vgcm_law_flags(law);
     double whole = 0, left = 0;
-    if (vgcm_columns(c)->phase[contact] == VGCM_AFFINE)
+    if (vgcm_columns(c)->phase[contact] ==
+        VGCM_AFFINE) /* no point of it has left the elastic range */
         return 1;
     for (size_t j = (size_t)c->p0[contact], end = j + (size_t)c->np[contact]; j < end; j++) {
         brc_lanes dn = brc_lanes_all(p->law[j][VGCM_DN]), ds = brc_lanes_all(p->law[j][VGCM_DS]);

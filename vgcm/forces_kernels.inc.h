@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over the contacts of grains: one body, called with literal flags, and compiled for each
- * instruction set by the files that include this one. Contacts of one phase are taken four at a
- * time: those that are affine and follow each other at once, the others from queues. */
+/* The loop over the contacts of grains: one body, called with literal flags so that it sheds what
+ * they turn off, and compiled for each instruction set by the files that include this one. Called
+ * once a step through the model's table; all time of a run is spent here. Contacts of one phase are
+ * taken four at a time: those that are affine and follow each other at once, the others from
+ * queues, since a branch on the phase within four lanes would make all of them take every way.
+ *
+ * A contact's phase may end within the step. Then its lane has no result, its state is still that
+ * before the step, and it goes to the queue of points; so the queues are worked off in the order
+ * affine, loose, points. */
 #ifndef VGCM_FORCES_KERNELS_H
 #define VGCM_FORCES_KERNELS_H
 
@@ -36,8 +42,9 @@ static bool vgcm_points_stay_elastic(const struct vgcm_loop *l, size_t i,
     return true;
 }
 
-/* Where some point of a contact leaves the elastic range. Bounds over the facets first; a contact
- * that fails them is looked at point by point. */
+/* The bound takes the largest opening and the largest slip, wherever they are: it costs about what
+ * two points do, and a facet has seven. Where some point of a contact leaves the elastic range.
+ * Bounds over the facets first; a contact that fails them is looked at point by point. */
 VGCM_INLINE brc_mask vgcm_affine_fails(const struct vgcm_loop *l, const struct vgcm_contact4 *x)
 {
     const struct vgcm_law *law = l->law;
@@ -85,16 +92,17 @@ VGCM_INLINE void vgcm_affine_forces(struct vgcm_loop *l, int flags, struct vgcm_
     if (flags & VGCM_LEDGER) { /* by the force halfway, which is linear in the field */
         brc_lanes work = vgcm_force_work(x->sum, x->m.du);
         work -= 0.5 * vgcm_energy_affine(kn, ks, moment, x->m.du);
-        l->booked.affine += brc_lanes_where(x->live, work);
+        x->energy.bond = work;
     }
     if (flags & VGCM_VISCOUS) {
         brc_lanes viscous[VGCM_N_MOTION], c = vgcm_viscosity(l, &x->index);
         vgcm_force_affine(viscous, c, c, moment, x->m.du);
-        vgcm_contact4_viscous(l, x, flags, viscous);
+        vgcm_contact4_viscous(l, x, viscous);
     }
 }
 
-/* Four affine contacts from end to end, if all of them stay so; else nothing is done. Returns those
+/* All or none: a contact that fails has to be done by its points, from the state before the step.
+ * Four affine contacts from end to end, if all of them stay so; else nothing is done. Returns those
  * that leave the elastic range. */
 VGCM_INLINE brc_mask vgcm_contact4_affine(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x)
 {
@@ -104,7 +112,7 @@ VGCM_INLINE brc_mask vgcm_contact4_affine(struct vgcm_loop *l, int flags, struct
         return fails;
     vgcm_contact4_write(l, x);
     vgcm_affine_forces(l, flags, x);
-    vgcm_contact4_apply(l, x);
+    vgcm_contact4_apply(l, x, flags & VGCM_LEDGER && flags & VGCM_VISCOUS);
     return fails;
 }
 
@@ -137,8 +145,8 @@ static __attribute__((noinline)) void vgcm_requeue(struct vgcm_loop *l,
  */
 
 /* Viscous force of a sphere contact, whose normal force is fn. */
-VGCM_INLINE void vgcm_sphere_viscous(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x,
-                                     double area, const struct vgcm_point *q)
+VGCM_INLINE void vgcm_sphere_viscous(struct vgcm_loop *l, struct vgcm_contact4 *x, double area,
+                                     const struct vgcm_point *q)
 {
     brc_lanes none = brc_lanes_all(0), viscous[VGCM_N_MOTION] = {none};
     brc_lanes c = vgcm_viscosity(l, &x->index) * area;
@@ -147,7 +155,7 @@ VGCM_INLINE void vgcm_sphere_viscous(struct vgcm_loop *l, int flags, struct vgcm
     viscous[VGCM_OPEN] = brc_lanes_where(closed, normal);
     viscous[VGCM_S] = brc_lanes_where(closed, -c * x->m.du[VGCM_S]);
     viscous[VGCM_T] = brc_lanes_where(closed, -c * x->m.du[VGCM_T]);
-    vgcm_contact4_viscous(l, x, flags, viscous);
+    vgcm_contact4_viscous(l, x, viscous);
 }
 
 /* Forces of a sphere contact that touches or has just parted. */
@@ -156,6 +164,7 @@ static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
     struct brc_contacts *c = l->c;
     struct vgcm_contact4 x = {.index = {.at = {i, i, i, i}}, .live = brc_lanes_first(1)};
     struct vgcm_bond bond = vgcm_springs_of(l->law, l->f->kn[i]);
+    struct vgcm_energy e = {0};
     size_t j = (size_t)c->p0[i];
     double area = l->p->law[j][VGCM_AREA];
     vgcm_motion_of(&l->sim->bodies, c, &x.index, l->sim->dt, &x.m);
@@ -163,14 +172,17 @@ static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
     vgcm_put3(l->f->s, &x.index, x.m.s);
     double du[3] = {x.m.du[VGCM_OPEN][0], x.m.du[VGCM_S][0], x.m.du[VGCM_T][0]};
     struct vgcm_point q = vgcm_point_at(l->p, j, c->gap[i] - du[0], bond.ks * area);
-    vgcm_law_friction(&bond, area, du, &q, &l->booked.spheres);
+    vgcm_law_friction(&bond, area, du, &q, &e);
     vgcm_point_put(l->p, j, bond.per_ks / area, &q);
     x.sum[VGCM_OPEN] = brc_lanes_all(q.fn);
     x.sum[VGCM_S] = brc_lanes_all(q.fs);
     x.sum[VGCM_T] = brc_lanes_all(q.ft);
     if (flags & VGCM_VISCOUS)
-        vgcm_sphere_viscous(l, flags, &x, area, &q);
-    vgcm_contact4_apply(l, &x);
+        vgcm_sphere_viscous(l, &x, area, &q);
+    x.energy.normal[0] = e.normal;
+    x.energy.shear[0] = e.shear;
+    x.energy.friction[0] = e.friction;
+    vgcm_contact4_apply(l, &x, flags & VGCM_LEDGER);
     double k = c->gap[i] < 0 ? fmax(bond.kn, bond.ks) * area : 0;
     double h = x.m.h[0], g = x.m.d[0] - h;
     if ((k > 0) != (c->k[i][0] > 0)) {
@@ -179,7 +191,8 @@ static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
     }
 }
 
-/* Two spheres without a bond: one point that is broken from the start, with the total overlap. */
+/* One at a time: they are few, and most of them do not touch.
+ * Two spheres without a bond: one point that is broken from the start, with the total overlap. */
 static __attribute__((noinline)) void vgcm_sphere_step(struct vgcm_loop *l, int32_t i, int flags)
 {
     struct brc_contacts *c = l->c;
@@ -206,25 +219,30 @@ VGCM_INLINE bool vgcm_are_affine(const struct vgcm_loop *l, size_t i, size_t end
     return i + BRC_LANES <= end && memcmp(l->f->phase + i, affine, sizeof affine) == 0;
 }
 
-/* Affine contacts that follow each other are done at once; all others join the queues. */
+/* Affine contacts that follow each other are done at once; all others join the queues. Where
+ * viscous forces book energies, all of them wait. */
 VGCM_INLINE void vgcm_chunk_begin(struct vgcm_loop *l, int flags, size_t begin, size_t end)
 {
+    l->chunk.begin = begin;
+    l->chunk.is_waiting = flags & VGCM_VISCOUS;
     for (size_t i = begin; i < end; i += BRC_LANES) {
         if (vgcm_are_affine(l, i, end)) {
             struct vgcm_contact4 x;
+            vgcm_contact4_clear(&x);
+            x.index.is_consecutive = true;
             for (int k = 0; k < BRC_LANES; k++)
                 x.index.at[k] = (int32_t)i + k;
-            x.index.is_consecutive = true;
             x.live = brc_lanes_first(BRC_LANES);
             if (!brc_lanes_any(vgcm_contact4_affine(l, flags, &x)))
                 continue;
         }
+        l->chunk.is_waiting = true;
         for (size_t k = i; k < i + BRC_LANES && k < end; k++)
             vgcm_queue_add(&l->queue[l->f->phase[k]], (int32_t)k);
     }
 }
 
-VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags)
+VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags, size_t end)
 {
     struct vgcm_queue *q = l->queue;
     struct vgcm_contact4 x;
@@ -242,7 +260,6 @@ VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags)
         if (brc_lanes_any(fails))
             vgcm_requeue(l, &x, fails, VGCM_LOOSE);
     }
-    vgcm_queue_sort(&q[VGCM_POINTS], l->c->np);
     while (q[VGCM_POINTS].n > 0) {
         vgcm_fetch_ahead(l);
         vgcm_queue_next(&x, &q[VGCM_POINTS]);
@@ -250,6 +267,8 @@ VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags)
     }
     while (q[VGCM_SPHERE].n > 0)
         vgcm_sphere_step(l, q[VGCM_SPHERE].contact[--q[VGCM_SPHERE].n], flags);
+    if (!VGCM_FREE_SUMS && l->chunk.is_waiting)
+        vgcm_chunk_add(l, end);
 }
 
 VGCM_INLINE void vgcm_forces_loop(struct brc_sim *sim, const struct vgcm_law *law, const int flags)
@@ -260,19 +279,10 @@ VGCM_INLINE void vgcm_forces_loop(struct brc_sim *sim, const struct vgcm_law *la
                           .f = vgcm_columns(&sim->pairs),
                           .p = vgcm_point_columns(&sim->pairs)};
     for (size_t i = 0; i < l.c->n; i += VGCM_CHUNK) {
+        size_t end = i + VGCM_CHUNK < l.c->n ? i + VGCM_CHUNK : l.c->n;
         l.ahead = i + VGCM_CHUNK;
-        vgcm_chunk_begin(&l, flags, i, i + VGCM_CHUNK < l.c->n ? i + VGCM_CHUNK : l.c->n);
-        vgcm_chunk_finish(&l, flags);
-    }
-    if (flags & VGCM_LEDGER) {
-        const struct vgcm_energy_lanes *points = &l.booked.points;
-        const struct vgcm_energy *spheres = &l.booked.spheres;
-        sim->ledger.bond += brc_lanes_sum(points->bond) + brc_lanes_sum(l.booked.affine);
-        sim->ledger.contact_normal += brc_lanes_sum(points->normal) + spheres->normal;
-        sim->ledger.contact_shear += brc_lanes_sum(points->shear) + spheres->shear;
-        sim->ledger.damage += brc_lanes_sum(points->damage);
-        sim->ledger.friction += brc_lanes_sum(points->friction) + spheres->friction;
-        sim->ledger.viscous += brc_lanes_sum(l.booked.viscous);
+        vgcm_chunk_begin(&l, flags, i, end);
+        vgcm_chunk_finish(&l, flags, end);
     }
 }
 

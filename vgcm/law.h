@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The law of one local point: linear elastic, then damage in tension and shear under one scalar
+/* The law of one local point, written once, for four side by side; what tests and energy.c ask of
+ * one point alone goes through the same lines. Called by the loops and by nothing outside the
+ * folder; it may not know contacts, bodies or the time step, so that it can be tested by hand
+ * values alone.
+ *
+ * The law: linear elastic, then damage in tension and shear under one scalar
  * damage, then compression and Coulomb friction. Opening and tension are positive here. The shear
  * force is the one on b, so it points against the slip.
  *
@@ -59,7 +64,9 @@ struct vgcm_energy {
     double bond, normal, shear, damage, friction;
 };
 
-/* What the law wants to know of a bond, without a division left for its points. */
+/* Divisions take as long as a dozen multiplications, and a contact has 7 points: so they are made
+ * once a contact, and forces are counted per area and stiffness until they are summed up. What the
+ * law wants to know of a bond, without a division left for its points. */
 enum vgcm_bond_parts {
     VGCM_U0,      /* m, opening at the tensile strength */
     VGCM_PER_WN,  /* 1/m, damage per opening past it */
@@ -110,7 +117,9 @@ static inline void vgcm_law_softening(struct vgcm_law *law, double beta, double 
     law->slope[1] = beta / (1 - law->kink);
 }
 
-/* Strength at a damage over the peak strength: 1 at 0, beta at the kink, 0 from 1 on. */
+/* The greater of two lines, or the lesser where the curve bulges out (slope[1] > slope[0]): no
+ * branch on which of them holds. Strength at a damage over the peak strength: 1 at 0, beta at the
+ * kink, 0 from 1 on. */
 VGCM_INLINE brc_lanes vgcm_lanes_strength(const struct vgcm_law *law, int flags, brc_lanes damage)
 {
     brc_lanes none = brc_lanes_all(0), one = brc_lanes_all(1);
@@ -225,8 +234,11 @@ VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, brc_lanes e0,
     return brc_lanes_max(limit, brc_lanes_all(0));
 }
 
-/* Damage grows with the opening past the largest so far; tension follows the secant to the strength
- * at the largest. One division serves the secants before and now. */
+/* Opening goes first and slip second: each is the exact return to its own curve with the other's
+ * damage as it is by then. Solving both at once would need an iteration in each point, for a change
+ * of second order in the step. Damage grows with the opening past the largest so far; tension
+ * follows the secant to the strength at the largest. One division serves the secants before and
+ * now. */
 VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bond[VGCM_N_BOND],
                                  int flags, struct vgcm_point_lanes *p)
 {
@@ -290,8 +302,12 @@ VGCM_INLINE void vgcm_lanes_account_broken(brc_mask was, brc_mask is, brc_lanes 
     e->shear += area * brc_lanes_pick(is, none, stored[1] - brc_lanes_pick(was, none, old[1]));
 }
 
-/* Energies of a step, by the trapezoid rule for each force, see common/engine/ledger.h. Returns
- * what points that were whole have lost [J]. */
+/* A bond that has been weakened gives back less than was put in: excess is what the trapezoid of
+ * the forces takes up beyond what is stored. With damage that is dissipated; without it (unloading
+ * along the secant, to rounding) it stays stored, so that no round-off is booked as fracture
+ * energy. A point that slides while it is whole loses the friction's share to friction, the rest to
+ * damage. Energies of a step, by the trapezoid rule for each force, see common/engine/ledger.h.
+ * Returns what points that were whole have lost [J]. */
 VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
                                          const brc_lanes bond[VGCM_N_BOND], int flags,
                                          brc_lanes area, const struct vgcm_point_lanes *p,

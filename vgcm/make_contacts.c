@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which pairs interact, and the contacts of new contacts. */
+/* Which pairs interact, and the state in which new contacts begin. Called at the start and at each
+ * neighbour search, never within a step; all that a contact keeps for good (stiffness, places and
+ * areas of points, moments) is set here. It may not know the law past its elastic range. */
 #include "vgcm/vgcm.h"
 
 #include "common/geometry/vec.h"
@@ -53,6 +55,8 @@ static bool is_inner(const struct brc_facets *facets, size_t facet)
     return facets->cell[facet][1] >= 0;
 }
 
+/* The paper does not say which facets are contacts; README.md tells how these rules compare. A
+ * facet that rounding has left has no area to be stiff with, and would only cost time. */
 static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets, size_t facet)
 {
@@ -135,7 +139,8 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
     return code;
 }
 
-/* Area moments and radius of a contact from its points. */
+/* Six moments carry the whole contact while it is elastic: its force, energy and stiffness are sums
+ * over points of products of their places. Area moments and radius of a contact from its points. */
 static void set_moments(struct brc_contacts *c, size_t i)
 {
     struct vgcm_contacts *f = vgcm_columns(c);
@@ -261,7 +266,9 @@ static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *p
     c->np[i] = (int32_t)(to - (size_t)c->p0[i]);
 }
 
-/* All points count from the start, closed or not: what the masses and the step must bear. */
+/* Half of the sums that pairs have, as a platen has no mass to be scaled. A platen that closes late
+ * must not make a step unstable that has been chosen before.
+ * All points count from the start, closed or not: what the masses and the step must bear. */
 static void set_platen_stiffness(struct brc_contacts *c, size_t i, const struct vgcm_law *law)
 {
     const struct vgcm_contacts *f = vgcm_columns(c);
@@ -346,7 +353,9 @@ static double touching_distance(const struct brc_sim *sim, const int32_t pair[2]
     return touch + columns->radius[pair[1]];
 }
 
-/* Whether an existing contact stays although the candidates no longer name it. */
+/* A facet at a platen stays for good: it may come back, and its points' gaps at the start are part
+ * of the test. A contact with a force stays until it has none, or energy would vanish with it.
+ * Whether an existing contact stays although the candidates no longer name it. */
 static bool must_stay(const struct brc_contacts *c, size_t contact, bool is_platen)
 {
     bool is_facet = vgcm_columns(c)->phase[contact] != VGCM_SPHERE;
@@ -363,7 +372,9 @@ static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
     return now < touch + sim->skin;
 }
 
-/* Sorted union of the contacts that stay and the candidates that may touch. */
+/* Both lists are sorted by (a, b), so that one pass does it, and the order of contacts follows from
+ * the numbers of their bodies alone, never from when they were found. Sorted union of the contacts
+ * that stay and the candidates that may touch. */
 static size_t merge_contacts(const struct brc_sim *sim, const struct brc_contacts *c,
                              const struct brc_neighbours *list, int32_t (*pair)[2])
 {
@@ -391,7 +402,10 @@ static size_t merge_contacts(const struct brc_sim *sim, const struct brc_contact
     return n;
 }
 
-/* The one point of a new sphere contact, force-free as it is now. */
+/* Two grains without a bonded facet have no common plane, so that spheres are all that is left to
+ * meet by. An overlap that is there when a pair is first seen (cells bulge out of their spheres,
+ * and spheres of Laguerre cells overlap) would be energy from nowhere. The one point of a new
+ * sphere contact, force-free as it is now. */
 static int sphere_contact(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
                           size_t i)
 {
@@ -428,6 +442,8 @@ static int update_contacts(struct brc_sim *sim, const struct vgcm_law *law, stru
         return BRC_ERR_MEMORY;
     size_t n = merge_contacts(sim, c, list, pair);
     int code = 0;
+    /* most searches find what is there already: then no table moves, and what hangs on the version
+     * of the list stays */
     bool same = n == c->n;
     for (size_t i = 0; same && i < n; i++)
         same = pair[i][0] == c->a[i] && pair[i][1] == c->b[i];

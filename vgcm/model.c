@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of the VGCM-3D model. */
+/* The table of the VGCM-3D model: what common calls, and all that it may know of the folder. Checks
+ * the input against the specimen before any memory is taken, shapes the grains, and picks the loops
+ * that suit the options once a run; the work is in the other files. */
 #include "vgcm/vgcm.h"
 
 #include "common/geometry/vec.h"
@@ -105,6 +107,8 @@ static int check_oblique(struct brc_context *ctx, const struct brc_oblique *o, b
     return 0;
 }
 
+/* All that can be known to be wrong before a run, each with the numbers to mend it by: the law has
+ * no checks of its own, as its loops have no place to report from. */
 static int check(struct brc_context *ctx, const void *values, const struct brc_specimen *specimen)
 {
     struct vgcm_params scaled = *(const struct vgcm_params *)values, *p = &scaled;
@@ -157,7 +161,10 @@ static void free_state(void *state)
     free(state);
 }
 
-/* Spheres at their centres, with the mass of the whole cell. */
+/* Spheres at their centres, with the mass of the whole cell: a specimen of spheres alone would
+ * weigh two thirds of what the rock does. The bounding sphere takes in the whole cell, as broken
+ * facets act until the cells are apart. Inertia of a sphere of that volume, so that no orientation
+ * has to be integrated. */
 static int shape(struct brc_sim *sim, void *state)
 {
     const struct vgcm_params *p = sim->params;
@@ -207,6 +214,8 @@ static void select_loops(struct brc_sim *sim, void *state)
     own->flags =
         vgcm_law_flags(&own->law) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
         (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
+    /* AVX-512 has no loops of its own: they were 0.94 to 1.47 times as slow as those for AVX2 on
+     * three machines (docs/speed.md) */
     own->loops = brc_simd_of(sim->run.simd) == BRC_SIMD_BASE ? &vgcm_loops_base : &vgcm_loops_avx2;
 }
 
@@ -220,6 +229,8 @@ static void platens(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
     own->loops->platens(sim, &own->law, own->flags);
+    if (own->flags & VGCM_LEDGER)
+        vgcm_energy_book(sim);
 }
 
 static void energy(const struct brc_sim *sim, const void *state, double stored[3])
@@ -240,6 +251,7 @@ static double strength_left(const struct brc_sim *sim, const void *state, size_t
     return vgcm_strength_left(&sim->pairs, &own->law, contact);
 }
 
+/* One line for the header of a run: what a reader wants who compares it with the print. */
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
 {
     static const char *const rule[] = {"gap", "all", "area"};

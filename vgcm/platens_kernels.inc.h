@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over contacts of grains with platens, compiled for each instruction set; its contacts
- * are few, so the flags are looked at as it runs. The points of boundary facets ride on the grain:
- * frame (n, s, t) of the contact turns with it and a point is at h n + s s + t t from the centre.
- * The contact's own frame is fixed by the platen: normal out of the grain, against the platen's.
- * All vectors of a contact are in that frame until its forces are summed up. */
+/* The loop over contacts of grains with platens, compiled for each instruction set and called once
+ * a step. These contacts are few, so the flags are looked at as it runs, and four points of one
+ * contact are taken side by side, not one point of four contacts. May not know what a test does: a
+ * platen is its surface, its bonding, its friction and its motion (common/engine/platens.h).
+ *
+ * The points of boundary facets ride on the grain: frame (n, s, t) of the contact turns with it and
+ * a point is at h n + s s + t t from the centre. The contact's own frame is fixed by the platen:
+ * normal out of the grain, against the platen's. All vectors of a contact are in that frame until
+ * its forces are summed up; on a curved surface increments and forces of a point are along the
+ * surface's own frame there. */
 #ifndef VGCM_PLATENS_KERNELS_H
 #define VGCM_PLATENS_KERNELS_H
 
@@ -230,7 +235,8 @@ VGCM_INLINE void vgcm_platen_points_step(struct vgcm_platen_loop *w, size_t i, s
     w->gap = brc_lanes_min(brc_lanes_pick(x.live, q->un, w->gap), w->gap);
 }
 
-/* Dissipation of the viscous forces, by the mean of those before and after the step. */
+/* Over all points at once: the increments of a rigid grain are those of six numbers, and so is the
+ * work. Dissipation of the viscous forces, by the mean of those before and after the step. */
 static void vgcm_platen_account(struct vgcm_platen_loop *w, size_t i, double force[6])
 {
     double *old = w->f->viscous_force[i], viscous[6];
@@ -262,6 +268,8 @@ static void vgcm_platen_begin(struct vgcm_platen_loop *w, size_t i)
                                : 0;
     for (int k = 0; k < 6; k++)
         w->force[k] = w->viscous_force[k] = brc_lanes_all(0);
+    w->energy = (struct vgcm_energy_lanes){.bond = brc_lanes_all(0)};
+    w->viscous = 0;
     vgcm_platen_frames(w, i);
 }
 
@@ -280,6 +288,17 @@ static void vgcm_platen_finish(const struct vgcm_platen_loop *w, size_t i, const
     c->gap[i] = fmin(fmin(w->gap[0], w->gap[1]), fmin(w->gap[2], w->gap[3]));
 }
 
+/* Contacts of a grain come in the order of its platens, after those with other grains. */
+static void vgcm_platen_book(const struct vgcm_platen_loop *w, size_t i)
+{
+    const struct vgcm_bodies *columns = w->sim->bodies.model_columns;
+    double *e = columns->energy[w->c->a[i]];
+    e[VGCM_ENERGY_NORMAL] += brc_lanes_sum(w->energy.normal);
+    e[VGCM_ENERGY_SHEAR] += brc_lanes_sum(w->energy.shear);
+    e[VGCM_ENERGY_FRICTION] += brc_lanes_sum(w->energy.friction);
+    e[VGCM_ENERGY_VISCOUS] += w->viscous;
+}
+
 static void vgcm_platen_step(struct vgcm_platen_loop *w, size_t i, int flags)
 {
     double force[6];
@@ -291,6 +310,8 @@ static void vgcm_platen_step(struct vgcm_platen_loop *w, size_t i, int flags)
     if (flags & VGCM_VISCOUS)
         vgcm_platen_account(w, i, force);
     vgcm_platen_finish(w, i, force);
+    if (flags & VGCM_LEDGER)
+        vgcm_platen_book(w, i);
 }
 
 static void vgcm_platens_loop(struct brc_sim *sim, const struct vgcm_law *law, int flags)
@@ -302,12 +323,6 @@ static void vgcm_platens_loop(struct brc_sim *sim, const struct vgcm_law *law, i
                                  .law = *law};
     for (size_t i = 0; i < w.c->n; i++)
         vgcm_platen_step(&w, i, flags);
-    if (flags & VGCM_LEDGER) {
-        sim->ledger.contact_normal += brc_lanes_sum(w.energy.normal);
-        sim->ledger.contact_shear += brc_lanes_sum(w.energy.shear);
-        sim->ledger.friction += brc_lanes_sum(w.energy.friction);
-        sim->ledger.viscous += w.viscous;
-    }
 }
 
 #endif

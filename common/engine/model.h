@@ -13,7 +13,7 @@
 enum brc_model_flags {
     BRC_MODEL_ROTATES = 1,  /* grains turn: moments are used */
     BRC_MODEL_ORIENTED = 2, /* the model reads q: orientation is integrated */
-    BRC_MODEL_ADDS = 4      /* forces adds those of pairs to the bodies' sum; pairs keep f alone */
+    BRC_MODEL_ADDS = 4 /* forces adds those of pairs to the sum of bodies, in the order of (a, b) */
 };
 
 struct brc_model {

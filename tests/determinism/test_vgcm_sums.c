@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* vgcm: contacts that are listed but exert nothing change no bit of a run, though they move all
+ * others to other places in the list, and so into other chunks, lanes and queues. */
+#include "tests/fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct brc_model brc_model_vgcm;
+
+struct outcome {
+    size_t n_contacts, n_events, n_bodies;
+    double (*force)[6]; /* N, N m, on each body */
+    struct brc_ledger ledger;
+};
+
+static void run(struct fixture *f, const char *skin, int regime, struct outcome *o)
+{
+    static const char *const more[] = {"ledger: on", "ledger: on; regime: dynamic; dt: 3e-7 s"};
+    static const char *const test[] = {
+        "kind: compression; friction: 0.2; rate: 4e-6 1/s",
+        "kind: compression; friction: 0.2; loading: fixed; rate: 100 1/s"};
+    char settings[128];
+    snprintf(settings, sizeof settings, "%s; skin: %s", more[regime], skin);
+    fixture_sim(f, &brc_model_vgcm, regime == 0 ? "" : "viscous: 1e4 1/s", test[regime], settings);
+    fixture_steps(f, 600);
+    const struct brc_bodies *b = &f->sim.bodies;
+    *o = (struct outcome){.n_contacts = f->sim.pairs.n,
+                          .n_events = f->sim.events.table.n,
+                          .n_bodies = b->n,
+                          .force = malloc(b->n * sizeof *o->force),
+                          .ledger = f->sim.ledger};
+    assert_non_null(o->force);
+    for (size_t i = 0; i < b->n; i++) {
+        memcpy(o->force[i], b->f[i], sizeof b->f[i]);
+        memcpy(o->force[i] + 3, b->t[i], sizeof b->t[i]);
+    }
+}
+
+static void listed_contacts_change_no_bit(void **state)
+{
+    struct fixture *f = *state;
+    struct outcome few, many;
+    fixture_specimen(f, "shape: box; grains: packing; size: 25 mm, 25 mm, 35 mm");
+    for (int regime = 0; regime < 2; regime++) {
+        run(f, "0.2", regime, &few);
+        run(f, "0.5", regime, &many);
+        print_message("%zu and %zu contacts, %zu points broken\n", few.n_contacts, many.n_contacts,
+                      few.n_events);
+        assert_true(many.n_contacts > few.n_contacts + 20);
+        assert_true(few.n_events > 50);
+        assert_int_equal(many.n_events, few.n_events);
+        assert_memory_equal(few.force, many.force, few.n_bodies * sizeof *few.force);
+        assert_memory_equal(&few.ledger, &many.ledger, sizeof few.ledger);
+        free(few.force);
+        free(many.force);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {FIXTURE_TEST(listed_contacts_change_no_bit)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
