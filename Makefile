@@ -165,7 +165,7 @@ INCLUDEDIR ?= $(PREFIX)/include
 DATADIR ?= $(PREFIX)/share
 DOCDIR  ?= $(DATADIR)/doc/breccia
 # of the tessellation and the packing alone
-PUBLIC_HEADERS := $(filter-out common/specimen/tess_cgal.h common/specimen/packing_cache.h common/base/lanes.h common/engine/platen_surface.h common/engine/integrate_kernels.inc.h,$(wildcard common/*/*.h calib/*.h))
+PUBLIC_HEADERS := $(filter-out common/specimen/tess_cgal.h common/specimen/packing_cache.h common/base/lanes.h common/parallel/sums_kernels.inc.h common/engine/platen_surface.h common/engine/integrate_kernels.inc.h,$(wildcard common/*/*.h calib/*.h))
 DOCUMENTS := README.md LICENSE $(wildcard docs/*.md) docs/example_library.c
 COMPLETION := $(DATADIR)/bash-completion/completions/breccia
 $(BUILD)/breccia.1: docs/make-man $(BUILD)/breccia

@@ -16,6 +16,9 @@
     VECTOR(double, f, 3, BRC_STATE, "N", "sum of forces")                                         \
     VECTOR(double, t, 3, BRC_STATE, "N m", "sum of moments about the centre")                     \
     VECTOR(double, sum, 8, BRC_SCRATCH, "N, N m", "f, 0, t, 0 of pairs, while they are added up") \
+    SCALAR(double, terms, BRC_SCRATCH, "J, N", "terms of a sum over bodies, before it is made")   \
+    SCALAR(double, damping, BRC_SCRATCH, "J", "work of local damping before the kick")            \
+    SCALAR(double, damping_ahead, BRC_SCRATCH, "J", "and after it")                               \
     SCALAR(double, mass, BRC_STATE, "kg", "inertial mass in use; 0 on platens")                   \
     VECTOR(double, inertia, 3, BRC_STATE, "kg m2", "principal moments of inertia in use")         \
     RENAMED(double, path_length, travel, BRC_STATE, "m",                                          \

@@ -21,12 +21,32 @@ void brc_events_free(struct brc_events *e)
     brc_table_free(&e->table);
 }
 
+static bool is_before(const struct brc_event *event, const struct brc_events *e, size_t i)
+{
+    if (event->a != e->a[i])
+        return event->a < e->a[i];
+    return event->b != e->b[i] ? event->b < e->b[i] : event->point < e->point[i];
+}
+
+/* Row i + 1 becomes a copy of row i. */
+static void move_down(const struct brc_table *t, size_t i)
+{
+    for (int k = 0; k < t->set.n; k++) {
+        size_t size = brc_field_size(&t->set.fields[k]);
+        char *column = brc_table_column(t, k);
+        memcpy(column + (i + 1) * size, column + i * size, size);
+    }
+}
+
 void brc_events_add(struct brc_context *ctx, struct brc_events *e, int64_t step,
                     const struct brc_event *event)
 {
     size_t i = e->table.n;
     if (brc_table_resize(ctx, &e->table, i + 1) != 0)
         return;
+    /* within a step by grains and point, whatever order the contacts were taken in */
+    for (; i > 0 && e->step[i - 1] == step && is_before(event, e, i - 1); i--)
+        move_down(&e->table, i - 1);
     e->step[i] = step;
     e->a[i] = event->a;
     e->b[i] = event->b;

@@ -51,8 +51,9 @@ BRC_LANES_INLINE void brc_local_damping(const struct brc_sim *sim, brc_lanes d[3
         d[k] = part * v[k];
 }
 
+/* Energies of four bodies. */
 struct brc_kick_sums {
-    brc_lanes kinetic;       /* sum of m v- . v+ / 2 */
+    brc_lanes kinetic;       /* m v- . v+ / 2 */
     brc_lanes damping;       /* work of the damping force over the half step before the kick */
     brc_lanes damping_ahead; /* and over the half step after it */
 };
@@ -179,17 +180,20 @@ BRC_LANES_INLINE void brc_kick_rotation(const struct brc_sim *sim, size_t i, brc
 
 static void brc_kick_loop(struct brc_sim *sim, double dt)
 {
-    struct brc_kick_sums sums = {.kinetic = brc_lanes_all(0)};
+    const struct brc_bodies *b = &sim->bodies;
     bool rotates = sim->model.flags & BRC_MODEL_ROTATES;
     for (size_t i = 0; i < sim->bodies.n_grains; i += BRC_LANES) {
         brc_mask live = brc_lanes_first((int64_t)(sim->bodies.n_grains - i));
+        struct brc_kick_sums sums = {.kinetic = brc_lanes_all(0)};
         brc_kick_translation(sim, i, live, dt, &sums);
         if (rotates)
             brc_kick_rotation(sim, i, live, dt, &sums);
+        brc_lanes_put(b->terms + i, sums.kinetic); /* rows of platens may be written, too */
+        if (BRC_OPTION(sim->run.ledger)) {
+            brc_lanes_put(b->damping + i, sums.damping);
+            brc_lanes_put(b->damping_ahead + i, sums.damping_ahead);
+        }
     }
-    sim->ledger.kinetic = brc_lanes_sum(sums.kinetic);
-    sim->ledger.local_damping += brc_lanes_sum(sums.damping);
-    sim->damping_ahead = brc_lanes_sum(sums.damping_ahead);
 }
 
 #endif

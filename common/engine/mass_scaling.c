@@ -3,6 +3,7 @@
 
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
+#include "common/parallel/sums.h"
 
 /* The start of a test, and its first step, in which the load closes contacts. */
 static bool is_beginning(const struct brc_sim *sim)
@@ -28,14 +29,21 @@ static void set_mass(struct brc_sim *sim, size_t i, double mass, double inertia)
     double leaves = 0.5 * (b->mass[i] * brc_norm2(b->v[i]) - mass * brc_norm2(v)) +
                     0.5 * (1 - part[1]) * b->inertia[i][0] * brc_norm2(b->w[i]) +
                     0.5 * sim->dt * (brc_dot(dv, b->f[i]) + brc_dot(dw, b->t[i]));
-    if (is_beginning(sim))
-        sim->ledger.start -= leaves;
-    else
-        sim->ledger.mass_scaling += leaves;
+    b->terms[i] = leaves;
     brc_copy(b->v[i], v);
     brc_sub(b->w[i], b->w[i], dw);
     b->mass[i] = mass;
     brc_set(b->inertia[i], inertia, inertia, inertia);
+}
+
+/* The kinetic energies that set_mass has taken. */
+static void account(struct brc_sim *sim)
+{
+    double leaves = brc_sum_exact(sim->bodies.terms, sim->bodies.n_grains);
+    if (is_beginning(sim))
+        sim->ledger.start -= leaves;
+    else
+        sim->ledger.mass_scaling += leaves;
 }
 
 static void add_stiffness(const struct brc_contacts *c, size_t body, double k[2])
@@ -64,9 +72,11 @@ void brc_mass_scaling_update(struct brc_sim *sim)
         double mass = fmax(b->mass[i], sim->run.mass_margin * 0.25 * 4 * k[0]); /* eq:vgcm:26 */
         double inertia =
             fmax(b->inertia[i][0], sim->run.mass_margin * 0.25 * 4 * k[1]); /* eq:vgcm:27 */
+        b->terms[i] = 0;
         if (mass > b->mass[i] || inertia > b->inertia[i][0])
             set_mass(sim, i, mass, inertia);
     }
+    account(sim);
 }
 
 /* Mean stiffness of the springs that act, or may soon; 0: there are none. */
@@ -86,6 +96,7 @@ int brc_mass_scaling_loose(struct brc_sim *sim)
     struct brc_bodies *b = &sim->bodies;
     double k = -1;
     for (size_t i = 0; i < b->n_grains; i++) {
+        b->terms[i] = 0;
         if (b->mass[i] > 0 && b->inertia[i][0] > 0)
             continue;
         if (k < 0)
@@ -98,5 +109,6 @@ int brc_mass_scaling_loose(struct brc_sim *sim)
         double radius = cbrt(3 * b->volume[i] / (4 * BRC_PI));
         set_mass(sim, i, fmax(b->mass[i], mass), fmax(b->inertia[i][0], mass * radius * radius));
     }
+    account(sim);
     return 0;
 }

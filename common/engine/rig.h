@@ -165,10 +165,15 @@ struct brc_rig {
     void *own; /* parameters of the type's own section; owned */
     int n_platens;
     struct brc_platen platen[BRC_MAX_PLATENS];
-    int axis;          /* of the load */
-    double sense;      /* +1 where shortening counts as positive, -1 where lengthening does */
-    double length[3];  /* m, of the specimen at the start, along each axis */
-    double section;    /* m2, area that the load is divided by */
+    int axis;         /* of the load */
+    double sense;     /* +1 where shortening counts as positive, -1 where lengthening does */
+    double length[3]; /* m, of the specimen at the start, along each axis */
+    double section;   /* m2, area that the load is divided by */
+    /* by axis: number of the gauge's grains, sums of their places at the start and of the squares
+     */
+    struct brc_gauge {
+        double n, x, xx;
+    } gauge[3];
     bool has_gauge[3]; /* grains enough, far enough apart for a strain along x, y, z */
     BRC_RIG_SCALARS(BRC_SCALAR_MEMBER, BRC_SCALAR_RENAMED)
     struct brc_curve {

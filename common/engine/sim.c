@@ -5,6 +5,7 @@
 #include "common/engine/integrate.h"
 #include "common/engine/mass_scaling.h"
 #include "common/geometry/vec.h"
+#include "common/parallel/sums.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,6 +66,29 @@ static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3
     }
 }
 
+/* The same for rows of platens, whose own sums are over many grains, which ranks will share. */
+static void add_platen_rows(struct brc_sim *sim)
+{
+    const struct brc_contacts *c = &sim->platens;
+    struct brc_bodies *b = &sim->bodies;
+    for (size_t row = 0; row < c->n; row++) {
+        brc_sub(b->f[c->a[row]], b->f[c->a[row]], c->f[row]);
+        brc_add(b->t[c->a[row]], b->t[c->a[row]], c->ta[row]);
+    }
+    for (size_t p = b->n_grains; p < b->n; p++)
+        for (int k = 0; k < 6; k++) {
+            size_t n = 0;
+            for (size_t row = 0; row < c->n; row++)
+                if ((size_t)c->b[row] == p)
+                    b->terms[n++] = k < 3 ? c->f[row][k] : c->tb[row][k - 3];
+            double sum = brc_sum_exact_of(b->terms, n, b->n_grains);
+            if (k < 3)
+                b->f[p][k] += sum;
+            else
+                b->t[p][k - 3] += sum;
+        }
+}
+
 static void gather(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -79,7 +103,7 @@ static void gather(struct brc_sim *sim)
     }
     if (!is_added)
         add_rows(&sim->pairs, b->f, b->t);
-    add_rows(&sim->platens, b->f, b->t);
+    add_platen_rows(sim);
 }
 
 int brc_sim_near_platens(const struct brc_sim *sim, struct brc_neighbours *out)
@@ -177,14 +201,13 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
  * are held against the largest eigenfrequency of the present one. */
 static int update_masses(struct brc_sim *sim, bool is_listed)
 {
-    double margin = sim->run.mass_margin, mass = 0;
+    double margin = sim->run.mass_margin, mass;
     brc_mass_scaling_update(sim);
     if (sim->step == 0)
         BRC_TRY(brc_mass_scaling_loose(sim));
     if (margin >= SAFE_MASS_MARGIN || !is_listed)
         return 0;
-    for (size_t i = 0; i < sim->bodies.n_grains; i++)
-        mass += sim->bodies.mass[i];
+    mass = brc_sum_exact(sim->bodies.mass, sim->bodies.n_grains);
     if (mass <= MASS_GROWTH * sim->mass_checked)
         return 0;
     sim->mass_checked = mass;
@@ -395,7 +418,8 @@ static void add_gravity_work(struct brc_sim *sim)
     if (!BRC_OPTION(brc_norm2(sim->run.gravity) > 0))
         return;
     for (size_t i = 0; i < b->n_grains; i++)
-        sim->ledger.gravity += b->true_mass[i] * brc_dot(sim->run.gravity, b->v[i]) * sim->dt;
+        b->terms[i] = b->true_mass[i] * brc_dot(sim->run.gravity, b->v[i]) * sim->dt;
+    sim->ledger.gravity += brc_sum_exact(b->terms, b->n_grains);
 }
 
 int brc_sim_step(struct brc_sim *sim)

@@ -3,6 +3,7 @@
 
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
+#include "common/parallel/sums.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -69,13 +70,15 @@ static void scale(double (*u)[6], const double (*root)[2], size_t n)
             u[i][k] *= root[i][k / 3];
 }
 
-static double normalise(double (*u)[6], size_t n)
+/* term: room for n values. */
+static double normalise(double (*u)[6], double *term, size_t n)
 {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
+        term[i] = 0;
         for (int k = 0; k < 6; k++)
-            sum += u[i][k] * u[i][k];
-    double length = sqrt(sum);
+            term[i] += u[i][k] * u[i][k];
+    }
+    double length = sqrt(brc_sum_exact(term, n));
     for (size_t i = 0; length > 0 && i < n; i++)
         for (int k = 0; k < 6; k++)
             u[i][k] /= length;
@@ -88,21 +91,22 @@ static int largest_eigenvalue(struct brc_context *ctx, const struct brc_springs 
 {
     double(*u)[6] = brc_alloc(ctx, n, sizeof *u);
     double(*f)[6] = brc_alloc(ctx, n, sizeof *f);
+    double *term = brc_alloc(ctx, n, sizeof *term);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    int code = u && f && rng ? 0 : BRC_ERR_MEMORY;
+    int code = u && f && term && rng ? 0 : BRC_ERR_MEMORY;
     *value = 0;
     for (size_t i = 0; code == 0 && i < n; i++)
         for (int k = 0; k < 6; k++)
             u[i][k] = gsl_rng_uniform(rng) - 0.5;
     for (int it = 0; code == 0 && it < MAX_ITERATIONS; it++) {
-        normalise(u, n);
+        normalise(u, term, n);
         scale(u, root, n);
         memset(f, 0, n * sizeof *f);
         for (size_t s = 0; s < springs->n; s++)
             apply_spring(&springs->spring[s], u, f);
         scale(f, root, n);
         double before = *value;
-        *value = normalise(f, n);
+        *value = normalise(f, term, n);
         double(*swap)[6] = u;
         u = f;
         f = swap;
@@ -112,6 +116,7 @@ static int largest_eigenvalue(struct brc_context *ctx, const struct brc_springs 
     gsl_rng_free(rng);
     free(u);
     free(f);
+    free(term);
     return code;
 }
 

@@ -2,6 +2,7 @@
 #include "common/rigs/gauge.h"
 
 #include "common/engine/sim.h"
+#include "common/parallel/sums.h"
 
 #include <math.h>
 
@@ -32,31 +33,38 @@ static void check_axis(struct brc_sim *sim, int k)
         if (!is_in_gauge(sim, i))
             continue;
         double x = sim->bodies.x0[i][k] - 0.5 * (low[k] + high[k]), step = x - mean;
+        double place = sim->bodies.x0[i][k];
+        rig->gauge[k].x += place;
+        rig->gauge[k].xx += place * place;
         mean += step / (double)++n;
         square += step * (x - mean);
     }
+    rig->gauge[k].n = (double)n;
     rig->has_gauge[k] = n >= GAUGE_GRAINS && sqrt(square / (double)n) >= GAUGE_SPREAD * width;
+}
+
+/* Sums over the gauge's grains of u and x u, of displacements and places along k. */
+static void sum_displacements(const struct brc_sim *sim, int k, double *u, double *xu)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    for (size_t i = 0; i < b->n_grains; i++)
+        b->terms[i] = is_in_gauge(sim, i) ? b->x[i][k] - b->x0[i][k] : 0;
+    *u = brc_sum_exact(b->terms, b->n_grains);
+    for (size_t i = 0; i < b->n_grains; i++)
+        b->terms[i] *= b->x0[i][k];
+    *xu = brc_sum_exact(b->terms, b->n_grains);
 }
 
 double brc_gauge_strain(const struct brc_sim *sim, int k)
 {
-    const struct brc_bodies *b = &sim->bodies;
-    double n = 0, sx = 0, su = 0, sxx = 0, sxu = 0;
+    const struct brc_gauge *g = &sim->rig.gauge[k];
+    double u, xu;
     if (sim->rig.n_platens == 0)
         return 0;
     if (!sim->rig.has_gauge[k])
         return NAN;
-    for (size_t i = 0; i < b->n_grains; i++) {
-        if (!is_in_gauge(sim, i))
-            continue;
-        double x = b->x0[i][k], u = b->x[i][k] - x;
-        n += 1;
-        sx += x;
-        su += u;
-        sxx += x * x;
-        sxu += x * u;
-    }
-    return -(n * sxu - sx * su) / (n * sxx - sx * sx);
+    sum_displacements(sim, k, &u, &xu);
+    return -(g->n * xu - g->x * u) / (g->n * g->xx - g->x * g->x);
 }
 
 void brc_gauge_check(struct brc_sim *sim)

@@ -4,8 +4,10 @@
 #include "common/base/lanes.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
+#include "common/parallel/sums.h"
 
 #include <float.h>
+#include <string.h>
 
 /* Adaptive loading, in units of test.target: strain a step over the strain so far while the
  * specimen is elastic, and the unbalanced ratio that tells the onset of damage. */
@@ -48,31 +50,44 @@ double brc_loading_start_rate(const struct brc_test_params *test)
     return test->strain_max * (is_adaptive ? FIRST_PART * test->target : FIXED_PART);
 }
 
-/* Sum of the sizes of n forces; *active is how many of them act. */
-static double sum_of_sizes(double (*f)[3], size_t n, double *active)
+static brc_lanes sizes_of(double (*f)[3])
 {
-    brc_lanes sum = brc_lanes_all(0), acting = brc_lanes_all(0), one = brc_lanes_all(1), v[3];
-    for (size_t i = 0; i < n; i += BRC_LANES) { /* rows past the last are room */
-        brc_lanes_at3(v, f + i);
-        brc_lanes size = brc_lanes_sqrt(brc_lanes_dot(v, v));
-        size = brc_lanes_where(brc_lanes_first((int64_t)(n - i)), size);
-        sum += size;
-        acting += brc_lanes_where(brc_lanes_less(brc_lanes_all(0), size), one);
+    brc_lanes v[3];
+    brc_lanes_at3(v, f);
+    return brc_lanes_sqrt(brc_lanes_dot(v, v));
+}
+
+/* Sums of the sizes of the forces on the grains and of those of their contacts, each contact with
+ * its first grain; *active: how many contacts have a force. */
+static void sum_sizes(const struct brc_sim *sim, double *on_grains, double *of_contacts,
+                      size_t *active)
+{
+    const struct brc_bodies *b = &sim->bodies;
+    const struct brc_contacts *c = &sim->pairs;
+    *active = 0;
+    for (size_t i = 0; i < b->n_grains; i += BRC_LANES)
+        brc_lanes_put(b->terms + i, sizes_of(b->f + i)); /* rows past the last may be written */
+    *on_grains = brc_sum_exact(b->terms, b->n_grains);
+    memset(b->terms, 0, b->n_grains * sizeof *b->terms);
+    for (size_t row = 0; row < c->n; row += BRC_LANES) {
+        brc_lanes size = sizes_of(c->f + row);
+        for (size_t k = 0; k < BRC_LANES && row + k < c->n; k++) {
+            b->terms[c->a[row + k]] += size[k];
+            *active += size[k] > 0;
+        }
     }
-    *active = brc_lanes_sum(acting);
-    return brc_lanes_sum(sum);
+    *of_contacts = brc_sum_exact(b->terms, b->n_grains);
 }
 
 /* Mean unbalanced force on a grain over mean contact force. */
 static double unbalanced_ratio(const struct brc_sim *sim)
 {
-    const struct brc_bodies *b = &sim->bodies;
-    double acting, active;
-    double unbalanced = sum_of_sizes(b->f, b->n_grains, &acting);
-    double contact = sum_of_sizes(sim->pairs.f, sim->pairs.n, &active);
+    double unbalanced, contact;
+    size_t active;
+    sum_sizes(sim, &unbalanced, &contact, &active);
     if (contact <= 0)
         return 0;
-    return unbalanced / (double)b->n_grains / (contact / active);
+    return unbalanced / (double)sim->bodies.n_grains / (contact / (double)active);
 }
 
 /* The start is over when the field of velocities is that of steady loading. */
@@ -153,13 +168,14 @@ static void change_velocities(struct brc_sim *sim, double part)
         brc_add(v, v, b->v[i]);
         brc_add(w, w, b->w[i]);
         /* what leaves the kinetic energy of the leapfrog form, see ledger.h */
-        sim->ledger.rate_change -= b->mass[i] * brc_dot(dv, v) + b->inertia[i][0] * brc_dot(dw, w) +
-                                   0.5 * sim->dt * (brc_dot(dv, b->f[i]) + brc_dot(dw, b->t[i]));
+        b->terms[i] = b->mass[i] * brc_dot(dv, v) + b->inertia[i][0] * brc_dot(dw, w) +
+                      0.5 * sim->dt * (brc_dot(dv, b->f[i]) + brc_dot(dw, b->t[i]));
         brc_add(b->v[i], b->v[i], dv);
         brc_add(b->w[i], b->w[i], dw);
         brc_axpy(b->v_mean[i], part, b->v_mean[i]);
         brc_axpy(b->w_mean[i], part, b->w_mean[i]);
     }
+    sim->ledger.rate_change -= brc_sum_exact(b->terms, b->n_grains);
 }
 
 /* Velocities are in proportion to the rate as far as their energy is that of elastic loading; those
