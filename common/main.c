@@ -348,8 +348,11 @@ static int make_specimen(struct brc_context *ctx, const struct brc_case *run_cas
 /* After the signals are held: threads that MPI starts under a launcher must hold them, too. */
 static int start_single(struct brc_context *ctx)
 {
-    BRC_TRY(brc_comm_start(ctx));
-    if (brc_comm_size() > 1)
+    struct brc_comm all;
+    BRC_TRY(brc_comm_start(ctx, &all));
+    int size = brc_comm_of(ctx)->size;
+    ctx->comm = NULL;
+    if (size > 1)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "this version runs in one process; start it without mpirun");
     return 0;
 }

@@ -38,11 +38,12 @@ struct brc_context {
     const char *file; /* source place of the failure, for developers */
     int line;
     int quiet; /* 1: no log lines */
+    const struct brc_comm *comm; /* the ranks that share the run; NULL: this process alone */
 };
 
 #define BRC_CONTEXT_INIT  \
     {                     \
-        0, "", NULL, 0, 0 \
+        0, "", NULL, 0, 0, NULL \
     }
 
 /* Records the first failure (later ones are dropped) and returns code. */

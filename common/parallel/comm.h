@@ -1,20 +1,32 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ranks: start, end and reductions. No MPI name appears here; comm_mpi.c is the only file with
- * mpi.h. One process without a launcher (mpirun, srun) is the common case; it never starts MPI. */
+/* The communicator: the ranks that share a run, and what they do together. It is an object in the
+ * context, so that two runs in one process may have different ones, and a run in one process has
+ * the serial one, which never touches MPI. No MPI name appears here; comm_mpi.c is the only file
+ * with mpi.h but for the one of HDF5. */
 #ifndef BRC_COMM_H
 #define BRC_COMM_H
 
 #include "common/base/error.h"
 
-/* Starts MPI where a launcher has started this process; else, and where MPI runs already, does
- * nothing. BRC_ERR_INTERNAL: MPI does not start, or was ended before. */
-int brc_comm_start(struct brc_context *ctx);
+struct brc_comm {
+    int rank, size;
+    /* Sums the partial results of all ranks in rank order; every rank gets the same bits. */
+    int (*sum)(struct brc_context *ctx, const struct brc_comm *comm, double *values, int n);
+};
+
+/* 0 of 1. */
+extern const struct brc_comm brc_comm_serial;
+/* The communicator of a context: the serial one where none has been set. */
+static inline const struct brc_comm *brc_comm_of(const struct brc_context *ctx)
+{
+    return ctx->comm ? ctx->comm : &brc_comm_serial;
+}
+
+/* Starts MPI where a launcher (mpirun, srun) has started this process, and sets ctx->comm to all of
+ * its ranks, in *comm, which must outlive the context; else does nothing. BRC_ERR_INTERNAL: MPI
+ * does not start, or was ended before. */
+int brc_comm_start(struct brc_context *ctx, struct brc_comm *comm);
 /* Ends MPI where it runs. */
 void brc_comm_end(void);
-/* 0 of 1 while MPI does not run. */
-int brc_comm_rank(void);
-int brc_comm_size(void);
-/* Sums the partial results of all ranks in rank order; every rank gets the same bits. */
-int brc_comm_sum(struct brc_context *ctx, double *values, int n);
 
 #endif

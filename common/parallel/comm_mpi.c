@@ -27,7 +27,25 @@ static bool comm_is_up(void)
     return is_started && !is_ended;
 }
 
-int brc_comm_start(struct brc_context *ctx)
+static int sum(struct brc_context *ctx, const struct brc_comm *comm, double *values, int n)
+{
+    size_t size = (size_t)comm->size;
+    double *part = brc_alloc(ctx, size * (size_t)n, sizeof *part);
+    if (part == NULL)
+        return BRC_ERR_MEMORY;
+    int code = MPI_Allgather(values, n, MPI_DOUBLE, part, n, MPI_DOUBLE, MPI_COMM_WORLD);
+    for (int i = 0; i < n && code == MPI_SUCCESS; i++) {
+        values[i] = part[i];
+        for (size_t rank = 1; rank < size; rank++)
+            values[i] += part[rank * (size_t)n + (size_t)i];
+    }
+    free(part);
+    if (code != MPI_SUCCESS)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI could not exchange %d sums (code %d)", n, code);
+    return 0;
+}
+
+int brc_comm_start(struct brc_context *ctx, struct brc_comm *comm)
 {
     int is_ended = 0;
     if (!comm_is_up() && !comm_is_launched())
@@ -38,6 +56,10 @@ int brc_comm_start(struct brc_context *ctx)
     if (!comm_is_up() && MPI_Init(NULL, NULL) != MPI_SUCCESS)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI did not start");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    comm->sum = sum;
+    MPI_Comm_rank(MPI_COMM_WORLD, &comm->rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &comm->size);
+    ctx->comm = comm;
     return 0;
 }
 
@@ -45,40 +67,4 @@ void brc_comm_end(void)
 {
     if (comm_is_up())
         MPI_Finalize();
-}
-
-int brc_comm_rank(void)
-{
-    int rank = 0;
-    if (comm_is_up())
-        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    return rank;
-}
-
-int brc_comm_size(void)
-{
-    int size = 1;
-    if (comm_is_up())
-        MPI_Comm_size(MPI_COMM_WORLD, &size);
-    return size;
-}
-
-int brc_comm_sum(struct brc_context *ctx, double *values, int n)
-{
-    int size = brc_comm_size();
-    if (size == 1 || n == 0)
-        return 0;
-    double *part = brc_alloc(ctx, (size_t)size * (size_t)n, sizeof *part);
-    if (part == NULL)
-        return BRC_ERR_MEMORY;
-    int code = MPI_Allgather(values, n, MPI_DOUBLE, part, n, MPI_DOUBLE, MPI_COMM_WORLD);
-    for (int i = 0; i < n && code == MPI_SUCCESS; i++) {
-        values[i] = part[i];
-        for (int rank = 1; rank < size; rank++)
-            values[i] += part[(size_t)rank * (size_t)n + (size_t)i];
-    }
-    free(part);
-    if (code != MPI_SUCCESS)
-        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI could not exchange %d sums (code %d)", n, code);
-    return 0;
 }

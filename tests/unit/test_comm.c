@@ -14,24 +14,33 @@ static const char *launched(void)
 static void start_may_be_repeated(void **state)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
+    struct brc_comm all;
     (void)state;
-    assert_int_equal(brc_comm_size(), 1);
-    assert_int_equal(brc_comm_rank(), 0);
-    CHECK_OK(&ctx, brc_comm_start(&ctx));
-    CHECK_OK(&ctx, brc_comm_start(&ctx));
+    assert_int_equal(brc_comm_of(&ctx)->size, 1);
+    assert_int_equal(brc_comm_of(&ctx)->rank, 0);
+    CHECK_OK(&ctx, brc_comm_start(&ctx, &all));
+    CHECK_OK(&ctx, brc_comm_start(&ctx, &all));
 }
 
 static void ranks_are_those_of_the_launcher(void **state)
 {
+    struct brc_context ctx = BRC_CONTEXT_INIT;
+    struct brc_comm all;
     (void)state;
-    assert_int_equal(brc_comm_size(), launched() ? atoi(launched()) : 1);
-    assert_in_range(brc_comm_rank(), 0, brc_comm_size() - 1);
+    CHECK_OK(&ctx, brc_comm_start(&ctx, &all));
+    const struct brc_comm *comm = brc_comm_of(&ctx);
+    assert_int_equal(comm->size, launched() ? atoi(launched()) : 1);
+    assert_in_range(comm->rank, 0, comm->size - 1);
+    assert_true(launched() ? comm == &all : comm == &brc_comm_serial);
 }
 
 static void sum_is_formed_in_rank_order(void **state)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
-    int rank = brc_comm_rank(), size = brc_comm_size();
+    struct brc_comm all;
+    CHECK_OK(&ctx, brc_comm_start(&ctx, &all));
+    const struct brc_comm *comm = brc_comm_of(&ctx);
+    int rank = comm->rank, size = comm->size;
     double values[3] = {1 + rank, 0.1 * (rank + 1), rank == 0 ? 1e16 : 1};
     double expected[3] = {size * (size + 1) / 2.0, 0.1, 1e16};
     (void)state;
@@ -39,23 +48,24 @@ static void sum_is_formed_in_rank_order(void **state)
         expected[1] += 0.1 * (other + 1);
         expected[2] += 1;
     }
-    CHECK_OK(&ctx, brc_comm_sum(&ctx, values, 3));
+    CHECK_OK(&ctx, comm->sum(&ctx, comm, values, 3));
     assert_memory_equal(values, expected, sizeof values);
-    CHECK_OK(&ctx, brc_comm_sum(&ctx, NULL, 0));
+    CHECK_OK(&ctx, comm->sum(&ctx, comm, NULL, 0));
 }
 
 /* MPI cannot start a second time; one process has not started it. */
 static void end_is_final_under_a_launcher(void **state)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
+    struct brc_comm all;
     (void)state;
     brc_comm_end();
     brc_comm_end();
-    assert_int_equal(brc_comm_size(), 1);
+    assert_int_equal(brc_comm_of(&ctx)->size, 1);
     if (launched())
-        CHECK_FAILS(&ctx, brc_comm_start(&ctx), BRC_ERR_INTERNAL, "cannot start again");
+        CHECK_FAILS(&ctx, brc_comm_start(&ctx, &all), BRC_ERR_INTERNAL, "cannot start again");
     else
-        CHECK_OK(&ctx, brc_comm_start(&ctx));
+        CHECK_OK(&ctx, brc_comm_start(&ctx, &all));
 }
 
 int main(void)
