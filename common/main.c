@@ -56,7 +56,7 @@ static const struct option {
     {"--force", NULL, "RCV", "replace results that are there"},
     {"--force", NULL, "X", "replace the file that is there"},
     {"--quiet", NULL, "RCV", "no progress, no log lines"},
-    {"--help", NULL, "RCVPMIX", "this text"},
+    {"--help", NULL, "RCVPMIXT", "this text"},
 };
 enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 

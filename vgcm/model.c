@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define BRC_OWNER struct vgcm_params
 static const struct brc_param params[] = {BRC_PARAM_LIST(VGCM_PARAMS)};
@@ -222,6 +223,9 @@ static void select_loops(struct brc_sim *sim, void *state)
 static void forces(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
+    const struct vgcm_bodies *columns = sim->bodies.model_columns;
+    if (own->flags & VGCM_LEDGER)
+        memset(columns->energy, 0, sim->bodies.n_grains * sizeof *columns->energy);
     own->loops->forces[own->flags](sim, &own->law);
 }
 

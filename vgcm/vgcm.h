@@ -67,11 +67,10 @@ struct vgcm_params {
     BRC_PARAM_MEMBERS(VGCM_PARAMS)
 };
 
-#define VGCM_BODY_FIELDS(SCALAR, VECTOR)                                                          \
-    SCALAR(double, radius, BRC_STATE, "m", "radius of the sphere")                                \
-    VECTOR(double, energy, 8, BRC_SCRATCH, "J",                                                   \
-           "booked by the contacts in which it is a in this step, see enum vgcm_energies_booked") \
-    SCALAR(double, term, BRC_SCRATCH, "J", "one of them, while it is summed up")
+#define VGCM_BODY_FIELDS(SCALAR, VECTOR)                           \
+    SCALAR(double, radius, BRC_STATE, "m", "radius of the sphere") \
+    VECTOR(double, energy, 8, BRC_SCRATCH, "J",                    \
+           "booked by the contacts in which it is a in this step, see enum vgcm_energies_booked")
 
 struct vgcm_bodies {
     VGCM_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3)

@@ -105,8 +105,13 @@ static void bad_runs_are_named(void **state)
 static void assignments_are_exact(void **state)
 {
     static const struct brc_param params[] = {
-        {"a", BRC_REAL, "Pa", "1 Pa", NULL, NULL, 0, "a", NULL},
-        {"b", BRC_REAL, "1", "1", NULL, NULL, 8, "b", NULL},
+        {.key = "a", .kind = BRC_REAL, .unit = "Pa", .default_text = "1 Pa", .meaning = "a"},
+        {.key = "b",
+         .kind = BRC_REAL,
+         .unit = "1",
+         .default_text = "1",
+         .offset = 8,
+         .meaning = "b"},
     };
     static const struct calib_variable free_ones[] = {{"a", 0, 1}, {"b", 0, 1}, {"c", 0, 1}};
     struct brc_param_list list = {params, 2, 16};
