@@ -221,3 +221,17 @@ double poly_closest_margin(const struct poly_core *c, const struct poly_closest 
     }
     return margin;
 }
+
+double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3], bool is_strict,
+                         double contact_distance)
+{
+    struct poly_closest at;
+    double highest;
+    poly_highest(c, q, &highest);
+    if (highest <= 0)
+        return 0;
+    poly_closest_on_face(&at, c, face, q);
+    double path = at.s - contact_distance;
+    int32_t out = is_strict ? poly_outside(c, &c->face[face], q) : -1;
+    return out < 0 ? path : poly_most(path, brc_dot(c->side[out].m, q) - c->side[out].off);
+}

@@ -9,6 +9,21 @@
 
 #include "common/geometry/vec.h"
 
+static inline void poly_to_body(double r[3], const double m[3][3], const double x[3],
+                                const double v[3])
+{
+    double d[3];
+    brc_sub(d, v, x);
+    for (int k = 0; k < 3; k++)
+        r[k] = m[0][k] * d[0] + m[1][k] * d[1] + m[2][k] * d[2];
+}
+
+static inline void poly_to_space(double r[3], const double m[3][3], const double v[3])
+{
+    for (int k = 0; k < 3; k++)
+        r[k] = brc_dot(m[k], v);
+}
+
 /* fmin and fmax are calls; these are instructions. */
 static inline double poly_least(double a, double b)
 {
@@ -103,5 +118,8 @@ bool poly_closest_of_rule(struct poly_closest *r, const struct poly_core *c, int
 /* How far p may move before its closest feature is another one, 0 or less inside the core. */
 double poly_closest_margin(const struct poly_core *c, const struct poly_closest *at,
                            const double p[3]);
+/* Path of q before it can touch a face of the core. */
+double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3], bool is_strict,
+                         double contact_distance);
 
 #endif

@@ -14,20 +14,6 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3],
-                         enum poly_rule rule, double contact_distance)
-{
-    struct poly_closest at;
-    double highest;
-    poly_highest(c, q, &highest);
-    if (highest <= 0)
-        return 0;
-    poly_closest_on_face(&at, c, face, q);
-    double path = at.s - contact_distance;
-    int32_t out = rule == POLY_STRICT ? poly_outside(c, &c->face[face], q) : -1;
-    return out < 0 ? path : poly_most(path, brc_dot(c->side[out].m, q) - c->side[out].off);
-}
-
 /* The other core's vertices near v lower its weight. */
 static void fade_vertex(struct poly_geometry4 *t, const struct poly_pair *p, bool of_b,
                         const brc_lanes v[3], brc_lanes sign, const int32_t near[POLY_NEAR])
@@ -66,7 +52,7 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
         *feature = at.feature;
     } else if (!poly_closest_of_rule(&at, c, *feature, q, rule == POLY_STRICT,
                                      p->contact_distance)) {
-        t->delta = -poly_path_to_face(c, *feature, q, rule, p->contact_distance);
+        t->delta = -poly_path_to_face(c, *feature, q, rule == POLY_STRICT, p->contact_distance);
         return false;
     } else if (rule == POLY_STRICT && poly_height(&c->face[*feature], q) > 0) {
         *margin = poly_closest_margin(c, &at, q);

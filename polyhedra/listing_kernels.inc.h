@@ -92,7 +92,8 @@ static int poly_list_faces(struct brc_context *ctx, struct poly_list *l, const s
         if (fabs(s->height[(size_t)v * s->stride + (size_t)f]) >= p->contact_distance + skin &&
             s->highest[v] > 0)
             continue;
-        double path = poly_path_to_face(s->other, f, s->q[v], rule, p->contact_distance);
+        double path =
+            poly_path_to_face(s->other, f, s->q[v], rule == POLY_STRICT, p->contact_distance);
         if (path < skin)
             BRC_TRY(poly_list_add_vertex(ctx, l, of_b, v, f, poly_none_near, path));
     }
