@@ -37,12 +37,12 @@ struct brc_context {
     char message[BRC_MESSAGE_SIZE];
     const char *file; /* source place of the failure, for developers */
     int line;
-    int quiet; /* 1: no log lines */
+    int quiet;                   /* 1: no log lines */
     const struct brc_comm *comm; /* the ranks that share the run; NULL: this process alone */
 };
 
-#define BRC_CONTEXT_INIT  \
-    {                     \
+#define BRC_CONTEXT_INIT        \
+    {                           \
         0, "", NULL, 0, 0, NULL \
     }
 

@@ -35,6 +35,7 @@ enum { BRC_TEXT_SIZE = 256 };
 struct brc_param {
     const char *key;
     enum brc_param_kind kind;
+    unsigned flags;           /* enum brc_param_flags; last in a row: "meaning", .flags = ... */
     const char *unit;         /* SI unit as UDUNITS-2 reads it; "1" for a pure number */
     const char *default_text; /* as written in a case file; NULL: must be given */
     const char *range;        /* interval in SI units, "(0, inf)", "[0, 1]"; NULL: any */
@@ -46,7 +47,6 @@ struct brc_param {
      * another section is "section.key"; a value is a choice, auto or 0. To give the key elsewhere
      * is an error, see applies.h. */
     const char *applies;
-    unsigned flags;      /* enum brc_param_flags; last in a row: "meaning", .flags = ... */
     const char *renamed; /* the key's name in older cases, which is still read; else NULL */
 };
 

@@ -69,8 +69,8 @@ struct brc_summary {
     double cpu_s, wall_s;       /* of the step loop, all parts of a resumed run together */
     double ns_per_contact_step; /* cpu_s over steps and n_contacts_mean */
     double energy_residual, energy_drift, unbalanced_max;
-    enum brc_energy_check energy_check;
     uint64_t state_hash;
+    enum brc_energy_check energy_check;
     int n_results;
     struct brc_summary_value results[BRC_SUMMARY_MAX_RESULTS];
 };

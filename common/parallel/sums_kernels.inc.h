@@ -15,12 +15,12 @@ static double largest(const double *x, size_t n)
     for (; i + BRC_LANES <= n; i += BRC_LANES) {
         brc_lanes a = brc_lanes_at(x + i);
         most = brc_lanes_max(brc_lanes_abs(a), most);
-        wrong += a - a; /* not 0 where a term is not finite: comparisons pass over these */
+        wrong += 0 * a; /* not 0 where a term is not finite: comparisons pass over these */
     }
     double of_rest = 0, rest_wrong = 0;
     for (; i < n; i++) {
         of_rest = fmax(of_rest, fabs(x[i]));
-        rest_wrong += x[i] - x[i];
+        rest_wrong += 0 * x[i];
     }
     of_rest = fmax(of_rest, fmax(fmax(most[0], most[1]), fmax(most[2], most[3])));
     return rest_wrong == 0 && brc_lanes_sum(wrong) == 0 ? of_rest : NAN;

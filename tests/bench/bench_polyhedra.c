@@ -192,8 +192,8 @@ static void remember(struct old_contacts *old, const struct brc_sim *sim)
     const struct poly_contacts *columns = c->model_columns;
     free(old->pair);
     free(old->wake);
-    *old =
-        (struct old_contacts){malloc(c->n * sizeof *old->pair), malloc(c->n * sizeof *old->wake), c->n};
+    *old = (struct old_contacts){malloc(c->n * sizeof *old->pair), malloc(c->n * sizeof *old->wake),
+                                 c->n};
     for (size_t i = 0; i < c->n; i++) {
         old->pair[i][0] = c->a[i];
         old->pair[i][1] = c->b[i];

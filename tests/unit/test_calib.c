@@ -457,9 +457,9 @@ static void objective_errors_are_named(void **state)
 static void objective_is_checked(void **state)
 {
     static const struct brc_param params[] = {
-        {"a", BRC_REAL, "Pa", "1 Pa", NULL, NULL, 0, .meaning = "a"},
-        {"b", BRC_REAL, "1", "1", NULL, NULL, 8, .meaning = "b"},
-        {"count", BRC_INT, "1", "1", NULL, NULL, 16, .meaning = "n"},
+        {"a", BRC_REAL, 0, "Pa", "1 Pa", NULL, NULL, 0, .meaning = "a"},
+        {"b", BRC_REAL, 0, "1", "1", NULL, NULL, 8, .meaning = "b"},
+        {"count", BRC_INT, 0, "1", "1", NULL, NULL, 16, .meaning = "n"},
     };
     struct brc_param_list list = {params, 3, 24};
     struct calib_targets t = fake_targets();
