@@ -321,7 +321,7 @@ static void bad_declarations_are_found(void **state)
         int code;
         const char *message;
     } bad[] = {
-        {{"Key", BRC_REAL, "m", "1 m", NULL, NULL, 0, .meaning = "x"},
+        {{"Key", BRC_REAL, 0, "m", "1 m", NULL, NULL, 0, .meaning = "x"},
          BRC_ERR_INTERNAL,
          "snake case"},
         {{"a", BRC_REAL, 0, "m", "1 m", NULL, NULL, 0, .meaning = ""},
