@@ -63,9 +63,16 @@ static void zeros_change_nothing(void **state)
         for (size_t i = 0; i < n; i++)
             padded[i] = x[i];
         double a = brc_sum_exact(padded, 2 * n), b = brc_sum_exact(spread, 2 * n);
+        double left_out = brc_sum_exact_of(padded, n, 2 * n);
         assert_memory_equal(&a, &b, sizeof a);
+        assert_memory_equal(&a, &left_out, sizeof a);
     }
     gsl_rng_free(rng);
+    /* what is cut off hangs on the number of terms of the whole, given or not */
+    static const double whole[N] = {1, -1, 0x1p-85};
+    double all = brc_sum_exact(whole, N), part = brc_sum_exact_of(whole, 3, N);
+    assert_memory_equal(&all, &part, sizeof all);
+    assert_true(brc_sum_exact(whole, 3) == 0x1p-85);
 }
 
 /* Against sums in long double: as good as rounding the true sum. */
