@@ -9,8 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_TESTS = 16 };
-
 /* Number of the test that measures a target, -1: none does. */
 static int test_of(const struct calib_target *t)
 {
@@ -125,10 +123,10 @@ static bool is_asked(const struct calib_objective *o, int test)
 int calib_objective_evaluate(struct brc_context *ctx, const struct calib_objective *o,
                              const double *x, struct calib_evaluation *out)
 {
-    struct brc_summary summary[MAX_TESTS];
+    struct brc_summary summary[BRC_MAX_RIGS];
     memset(out, 0, sizeof *out);
     BRC_TRY(check_bounds(ctx, o, x));
-    for (int test = 0; test < brc_rigs_count() && test < MAX_TESTS; test++) {
+    for (int test = 0; test < brc_rigs_count(); test++) {
         if (!is_asked(o, test))
             continue;
         BRC_TRY(run_test(ctx, o, x, test, &summary[test]));

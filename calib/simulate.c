@@ -98,7 +98,7 @@ int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial
 
 void calib_simulator_free(struct calib_simulator *s)
 {
-    for (int i = 0; i < CALIB_MAX_TESTS; i++) {
+    for (int i = 0; i < BRC_MAX_RIGS; i++) {
         if (s->has_specimen[i])
             brc_specimen_free(&s->specimen[i]);
         s->has_specimen[i] = false;

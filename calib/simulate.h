@@ -4,17 +4,18 @@
 #define CALIB_SIMULATE_H
 
 #include "calib/objective.h"
+#include "common/rigs/rigs.h"
 #include "common/specimen/specimen.h"
 
-enum { CALIB_MAX_TESTS = 16, CALIB_MAX_VARIABLES = 32 };
+enum { CALIB_MAX_VARIABLES = 32 };
 
 /* Zero all but path and dir before the first run. */
 struct calib_simulator {
-    const char *path[CALIB_MAX_TESTS]; /* case file by the number of its test; NULL: no such test */
+    const char *path[BRC_MAX_RIGS]; /* case file by the number of its test; NULL: no such test */
     const char *dir; /* results of the latest runs, one folder a test; without results before */
-    struct brc_specimen specimen[CALIB_MAX_TESTS];
-    bool has_specimen[CALIB_MAX_TESTS];
-    bool has_run[CALIB_MAX_TESTS]; /* its folder holds results of this simulator */
+    struct brc_specimen specimen[BRC_MAX_RIGS];
+    bool has_specimen[BRC_MAX_RIGS];
+    bool has_run[BRC_MAX_RIGS]; /* its folder holds results of this simulator */
 };
 
 /* To be used as calib_runner.run with a struct calib_simulator as user. */

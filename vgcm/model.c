@@ -216,7 +216,7 @@ static void select_loops(struct brc_sim *sim, void *state)
         vgcm_law_flags(&own->law) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
         (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
     /* AVX-512 has no loops of its own: they were 0.94 to 1.47 times as slow as those for AVX2 on
-     * three machines (docs/speed.md) */
+     * two machines of docs/speed.md and a third */
     own->loops = brc_simd_of(sim->run.simd) == BRC_SIMD_BASE ? &vgcm_loops_base : &vgcm_loops_avx2;
 }
 

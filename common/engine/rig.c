@@ -3,6 +3,8 @@
  * engine calls it; what a test does with them is in common/rigs. */
 #include "common/engine/rig.h"
 
+#include "common/engine/events.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +25,14 @@ static int copy_own(struct brc_context *ctx, struct brc_rig *rig, const void *ow
 
 int brc_rig_check(struct brc_context *ctx, const struct brc_test *test)
 {
-    return test->type->check ? test->type->check(ctx, test->params, test->own) : 0;
+    const struct brc_rig_type *t = test->type;
+    if (!t->place || !t->drive || !t->measure || !t->results)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "test %s lacks a required operation", t->name);
+    if (t->n_platens > BRC_MAX_PLATENS || t->n_quantities > BRC_MAX_RESULTS - BRC_N_MODES)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "test %s: %d platens and %d quantities, %d and %d at most",
+                 t->name, t->n_platens, t->n_quantities, BRC_MAX_PLATENS,
+                 BRC_MAX_RESULTS - BRC_N_MODES);
+    return t->check ? t->check(ctx, test->params, test->own) : 0;
 }
 
 int brc_rig_create(struct brc_context *ctx, struct brc_rig *rig, const struct brc_test *test)
@@ -32,7 +41,6 @@ int brc_rig_create(struct brc_context *ctx, struct brc_rig *rig, const struct br
     *rig = (struct brc_rig){
         .type = test->type, .params = *test->params, .n_platens = test->type->n_platens};
     brc_table_init(&rig->curve.table, "curve", set, &rig->curve);
-    BRC_TRY(brc_rig_check(ctx, test));
     BRC_TRY(copy_own(ctx, rig, test->own));
     rig->curve.own_columns = brc_alloc(ctx, 1, rig->type->columns.owner_size);
     rig->own_scalars = brc_alloc(ctx, 1, rig->type->state.owner_size);

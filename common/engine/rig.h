@@ -107,7 +107,7 @@ struct brc_rig_type {
     int n_quantities;
     int n_platens;
     int sides; /* of the polygon that stands for a circle, unless the case says; 0: as for any */
-    const struct brc_rig_view *view;
+    const struct brc_rig_view *view; /* NULL: stress over the gauge strains, cracks from the side */
 
     /* --- required --- */
 
@@ -186,7 +186,7 @@ struct brc_rig {
     void *own_scalars;
 };
 
-/* Judges the keys of a test together. */
+/* Judges the keys of a test together, and whether its table is complete. */
 int brc_rig_check(struct brc_context *ctx, const struct brc_test *test);
 /* Tables of the curve and of the type's own state, without a row of the curve. */
 int brc_rig_create(struct brc_context *ctx, struct brc_rig *rig, const struct brc_test *test);

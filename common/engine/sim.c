@@ -377,6 +377,7 @@ int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct br
     BRC_TRY(brc_simd_check(ctx, run->simd));
     BRC_TRY(brc_model_complete(ctx, model, &sim->model));
     BRC_TRY(sim->model.check(ctx, params, specimen));
+    BRC_TRY(brc_rig_check(ctx, test));
     const struct brc_model *m = &sim->model;
     size_t n_grains = specimen->facets.n_cells, n_platens = (size_t)test->type->n_platens;
     sim->params = brc_alloc(ctx, 1, m->params.owner_size);

@@ -26,11 +26,6 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
     brc_curve_peak_results(sim, out + BRC_N_MODULI);
 }
 
-static const struct brc_rig_view view = {.strain = "strain_axial",
-                                         .lateral = "strain_lateral",
-                                         .strain_label = "axial strain; dashed: lateral strain",
-                                         .stress_label = "axial stress"};
-
 const struct brc_rig_type brc_rig_compression = {
     .name = "compression",
     .meaning = "unconfined compression along z",
@@ -39,7 +34,6 @@ const struct brc_rig_type brc_rig_compression = {
     .n_quantities = BRC_N_MODULI + BRC_N_PEAK_RESULTS,
     .n_platens = 2,
     .sides = BRC_CORE_SIDES,
-    .view = &view,
     .check = check,
     .place = place,
     .drive = brc_two_platens_drive,

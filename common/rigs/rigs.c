@@ -22,6 +22,9 @@ static const struct brc_rig_type *const registered[] = {
 #undef BRC_RIG
 };
 
+_Static_assert(sizeof registered / sizeof registered[0] <= BRC_MAX_RIGS,
+               "BRC_MAX_RIGS is too small");
+
 int brc_rigs_count(void)
 {
     return (int)(sizeof registered / sizeof registered[0]);

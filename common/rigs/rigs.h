@@ -9,6 +9,7 @@
 /* test.kind where a case says nothing */
 #define BRC_RIG_DEFAULT "compression"
 
+enum { BRC_MAX_RIGS = 32 };
 int brc_rigs_count(void);
 const struct brc_rig_type *brc_rigs_at(int i);
 /* Number of the test of that name, -1: there is none. */

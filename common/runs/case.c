@@ -159,7 +159,7 @@ void brc_case_free(struct brc_case *run_case)
 {
     for (int i = 0; i < run_case->n_models; i++)
         free(run_case->model_params[i]);
-    for (int i = 0; i < BRC_CASE_MAX_RIGS; i++)
+    for (int i = 0; i < BRC_MAX_RIGS; i++)
         free(run_case->rig_params[i]);
     brc_casefile_free(&run_case->file);
     memset(run_case, 0, sizeof *run_case);

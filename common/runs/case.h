@@ -10,11 +10,7 @@
 #include "common/output/output.h"
 #include "common/runs/case_sections.h"
 
-enum {
-    BRC_CASE_MAX_MODELS = 32,
-    BRC_CASE_MAX_RIGS = 32,
-    BRC_CASE_MAX_SECTIONS = 4 + BRC_CASE_MAX_MODELS + BRC_CASE_MAX_RIGS
-};
+enum { BRC_CASE_MAX_MODELS = 32, BRC_CASE_MAX_SECTIONS = 4 + BRC_CASE_MAX_MODELS + BRC_MAX_RIGS };
 
 struct brc_case {
     struct brc_casefile file;
@@ -25,7 +21,7 @@ struct brc_case {
     struct brc_output_params output;
     int n_models;                            /* registered */
     void *model_params[BRC_CASE_MAX_MODELS]; /* one filled struct a registered model; owned */
-    void *rig_params[BRC_CASE_MAX_RIGS];     /* one a test, of its own section; owned */
+    void *rig_params[BRC_MAX_RIGS];          /* one a test, of its own section; owned */
 };
 
 /* Reads a case with n overrides "section.key=value". Files that the case names are looked up from

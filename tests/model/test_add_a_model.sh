@@ -4,18 +4,9 @@
 # name, then the springs of the page's code blocks. No existing file may change, and the conformance
 # suite must pass over the new model.
 set -eu
-BUILD=${BUILD:-build}
-copy=$BUILD/tests/add-a-model
-rm -rf "$copy"
-mkdir -p "$copy/$BUILD"
-# what make needs; objects come along, so that only the new folder is compiled
-git ls-files -z | xargs -0 cp -p --parents -t "$copy"
-cp -p build/deps.mk "$copy/build/"
-cp -pr "$BUILD/obj" "$BUILD/flags" "$BUILD"/*.h "$BUILD"/*.a "$copy/$BUILD/"
-cd "$copy"
-find . -type f ! -path './build/*' | sort | xargs sha256sum >build/sums
+. tests/copy_tree.sh
+copy_tree add-a-model
 
-make="make --no-print-directory CFG=$(case $BUILD in build) echo release ;; *) echo "${BUILD#build/}" ;; esac)"
 # section 1, as written
 sed -n 's/^    \(cp -r .*\|sed -i .*\)$/\1/p' docs/add-a-model.md >first
 [ "$(wc -l <first)" -eq 2 ]
@@ -36,7 +27,5 @@ grep '^    build/breccia run' docs/add-a-model.md | sed "s,build/breccia,$BUILD/
 [ "$(wc -l <run)" -eq 1 ]
 sh -eu run >log 2>&1 || { cat log; exit 1; }
 grep -q '"E"' results/spring/summary.json
-sha256sum --quiet -c build/sums
-cd - >/dev/null
-rm -rf "$copy"
+unchanged
 echo "docs/add-a-model.md adds a model without a change to an existing file"
