@@ -258,6 +258,20 @@ static void own_columns_are_written(void **state)
     rmdir(folder);
 }
 
+static void incomplete_tables_are_refused(void **state)
+{
+    struct fixture *f = *state;
+    struct brc_rig_type rig = brc_rig_null;
+    const struct brc_test test = {&rig, NULL, NULL};
+    CHECK_OK(&f->ctx, brc_rig_check(&f->ctx, &test));
+    rig.drive = NULL;
+    CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL,
+                "test null lacks a required operation");
+    rig = brc_rig_null;
+    rig.n_quantities = BRC_MAX_RESULTS;
+    CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL, "24 quantities");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {FIXTURE_TEST(forces_balance),
@@ -265,6 +279,7 @@ int main(void)
                                        FIXTURE_TEST(restart_gives_the_same_bits),
                                        FIXTURE_TEST(results_declared_are_results_given),
                                        FIXTURE_TEST(an_end_is_reached),
-                                       FIXTURE_TEST(own_columns_are_written)};
+                                       FIXTURE_TEST(own_columns_are_written),
+                                       FIXTURE_TEST(incomplete_tables_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
