@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The command line: commands and options are tables, from which help, the manual page, completion
- * and the reader come. Nothing is done here but to choose what other rooms do; the order matters
- * where signals are held before MPI starts its threads. */
+ * and the reader come, so that none of them can name an option that another does not know. getopt
+ * would not do: it knows neither commands with options of their own nor the name that was meant.
+ *
+ * Nothing is done here but to choose what other rooms do. The order matters twice: what can be
+ * refused is refused before a specimen is made, which may take minutes, and signals are held before
+ * MPI starts its threads. */
 #include "common/parallel/comm.h"
 #include "common/runs/compare.h"
 #include "common/base/console.h"
@@ -17,46 +21,248 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* More than anybody types: what a script sets beyond that belongs into a case file, which is kept
+ * with the results as it stands. */
 enum { MAX_OVERRIDES = 256 };
 
+/* What a command was asked for. Members that options fill are found by their offsets. */
 struct options {
     const char *operand; /* CASE, or the section of `params`, or a file */
     const char *model, *dir, *table, *format;
     const char *observable, *axes;
-    int seeds, refine, jobs;
-    const char *program, *command; /* as they were called */
-    const char **given; /* options with their values, as they were given; [2 * n_given] */
-    int n_given;
+    int seeds, refine, jobs; /* 0: not given */
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
     bool is_resumed, is_forced, is_quiet, is_help;
+    const char *program;
+    /* The command and its words without flags, for the command that goes on: moved to the front of
+     * argv as they are read. */
+    char **kept;
+    int n_kept;
 };
 
-/* Options by command: R run, C compare, V converge, X export. */
+/* ---- commands ------------------------------------------------------------------------------ */
+
+/* Where results go: as the user says, else by the names of the case and, for a run, of its model.
+ * A path that is cut here is refused later, as too long for any file in it. */
+static void choose_dir(char dir[BRC_PATH_SIZE], const struct options *o,
+                       const struct brc_case *run_case, const char *model)
+{
+    if (o->dir)
+        snprintf(dir, BRC_PATH_SIZE, "%s", o->dir);
+    else
+        snprintf(dir, BRC_PATH_SIZE, "results/%s%s%s", run_case->name, *model ? "/" : "", model);
+}
+
+/* A large packing takes minutes in which there is nothing to save: signals end the program at once
+ * until it is there, and are held for the step loop from then on. */
+static int make_specimen(struct brc_context *ctx, const struct brc_case *run_case,
+                         struct brc_specimen *specimen)
+{
+    brc_signals_leave();
+    BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, specimen));
+    brc_log(ctx, "%s: %zu grains, %zu facets", run_case->name, specimen->facets.n_cells,
+            specimen->facets.n_facets);
+    brc_specimen_warn(ctx, specimen);
+    brc_signals_hold();
+    return 0;
+}
+
+/* After the signals are held: threads that MPI starts under a launcher must hold them, too. Ranks
+ * are counted to refuse them: N processes of one run would write over each other in one folder. */
+static int start_single(struct brc_context *ctx)
+{
+    struct brc_comm all;
+    BRC_TRY(brc_comm_start(ctx, &all));
+    int size = brc_comm_of(ctx)->size;
+    ctx->comm = NULL;
+    if (size > 1)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "this version runs in one process; start it without mpirun");
+    return 0;
+}
+
+static int run_model(struct brc_context *ctx, const struct options *o,
+                     const struct brc_case *run_case)
+{
+    char dir[BRC_PATH_SIZE];
+    struct brc_specimen specimen = {0};
+    struct brc_progress progress;
+    struct brc_summary summary;
+    const struct brc_summary *row = &summary;
+    struct brc_run_options options = {.run_case = run_case,
+                                      .specimen = &specimen,
+                                      .dir = dir,
+                                      .is_resumed = o->is_resumed,
+                                      .is_forced = o->is_forced,
+                                      .progress = &progress};
+    const char *name = o->model ? o->model : run_case->file.head.model;
+    if (!*name)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
+                 o->operand);
+    BRC_TRY(brc_case_model(ctx, name, &options.model));
+    choose_dir(dir, o, run_case, name);
+    BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
+    int code = make_specimen(ctx, run_case, &specimen);
+    if (code == 0)
+        code = start_single(ctx);
+    if (code == 0) {
+        brc_progress_begin(&progress, stderr, &name, 1, o->is_quiet);
+        code = brc_run(ctx, &options, &summary);
+        brc_progress_end(&progress);
+    }
+    if (code == 0 || code == BRC_ERR_ENERGY) { /* results are kept; the status says what they are */
+        brc_compare_table(stdout, &row, 1);
+        printf("results in %s\n", dir);
+    }
+    brc_specimen_free(&specimen);
+    return code;
+}
+
+static int compare_case(struct brc_context *ctx, const struct options *o,
+                        const struct brc_case *run_case)
+{
+    char dir[BRC_PATH_SIZE];
+    struct brc_specimen specimen = {0};
+    const struct brc_compare_options options = {.run_case = run_case,
+                                                .specimen = &specimen,
+                                                .dir = dir,
+                                                .is_resumed = o->is_resumed,
+                                                .is_forced = o->is_forced,
+                                                .is_quiet = o->is_quiet};
+    choose_dir(dir, o, run_case, "");
+    int code = make_specimen(ctx, run_case, &specimen);
+    if (code == 0)
+        code = brc_compare(ctx, &options);
+    if (code == 0)
+        printf("results in %s\n", dir);
+    brc_specimen_free(&specimen);
+    return code;
+}
+
+static int converge_case(struct brc_context *ctx, const struct options *o,
+                         const struct brc_case *run_case)
+{
+    char dir[BRC_PATH_SIZE];
+    const struct brc_converge_options options = {.run_case = run_case,
+                                                 .model = o->model,
+                                                 .dir = dir,
+                                                 .observable =
+                                                     o->observable ? o->observable : "strength",
+                                                 .axes = o->axes ? o->axes : "",
+                                                 .seeds = o->seeds ? o->seeds : 4,
+                                                 .refine = o->refine ? o->refine : 8,
+                                                 .jobs = o->jobs ? o->jobs : 1,
+                                                 .is_resumed = o->is_resumed,
+                                                 .is_forced = o->is_forced};
+    if (options.refine < 2 || (options.refine & (options.refine - 1)) != 0)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
+                 BRC_CONVERGE_MAX_REFINE, options.refine);
+    choose_dir(dir, o, run_case, "");
+    brc_signals_hold(); /* at once: a ladder keeps each run that is finished */
+    int code = brc_converge(ctx, &options);
+    if (code == 0)
+        printf("results in %s\n", dir);
+    return code;
+}
+
+static int act_info(struct brc_context *ctx, const struct options *o)
+{
+    return brc_info_print(ctx, stdout, o->operand);
+}
+
+static int act_export(struct brc_context *ctx, const struct options *o)
+{
+    const char *what = o->format ? o->format : o->table;
+    if (!what || (o->format && o->table))
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
+    const struct brc_export_options options = {o->operand, o->dir, o->is_forced};
+    return o->table ? brc_export_table(ctx, &options, o->table)
+                    : brc_export_format(ctx, &options, o->format);
+}
+
+static int act_params(struct brc_context *ctx, const struct options *o)
+{
+    const char *name;
+    struct brc_param_list list;
+    char hint[BRC_HINT_SIZE];
+    struct brc_nearest nearest = {.text = o->operand};
+    bool is_found = false;
+    for (int i = 0; brc_case_section(i, &name, &list); i++) {
+        if (o->operand)
+            brc_nearest_add(&nearest, name);
+        if (o->operand && strcmp(o->operand, name) != 0)
+            continue;
+        if (is_found)
+            putchar('\n');
+        brc_params_print(stdout, name, list);
+        is_found = true;
+    }
+    if (!is_found)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "no section '%.60s'%s; breccia params lists all", o->operand,
+                 brc_nearest_hint(&nearest, hint));
+    return 0;
+}
+
+static int act_models(struct brc_context *ctx, const struct options *o)
+{
+    (void)ctx, (void)o;
+    for (int i = 0; i < brc_registry_count(); i++)
+        printf("%-12s %s\n", brc_registry_at(i)->name, brc_registry_at(i)->citation);
+    return 0;
+}
+
+static int act_tests(struct brc_context *ctx, const struct options *o)
+{
+    (void)ctx, (void)o;
+    for (int i = 0; i < brc_rigs_count(); i++) {
+        const struct brc_rig_type *rig = brc_rigs_at(i);
+        printf("%s: %s\n  keys: %s\n", rig->name, rig->meaning, rig->keys);
+        for (int k = 0; k < rig->n_quantities; k++)
+            printf("  %-15s %-3s %s\n", rig->quantities[k].name, rig->quantities[k].unit,
+                   rig->quantities[k].meaning);
+    }
+    return 0;
+}
+
+/* ---- tables -------------------------------------------------------------------------------- */
+/* Behind the functions that they name, so that none has to be declared twice. */
+
+#define AT(member) offsetof(struct options, member)
+
+/* Options by command: R run, C compare, V converge, X export. One name may stand in several rows,
+ * where commands mean different things by it. */
 static const struct option {
-    const char *name, *value, *commands, *help;
+    const char *name, *value; /* value NULL: a flag */
+    size_t member;
+    int largest; /* of a whole number; 0: the value is a text */
+    const char *commands, *help;
 } option_table[] = {
-    {"--model", "NAME", "R", "contact model; default: `model` of the case"},
-    {"--model", "NAME", "V", "this model alone; default: those that compare runs"},
-    {"-o", "DIR", "V", "folder of results; default: results/<case>"},
-    {"--observable", "NAME", "V", "the result to look at; default: strength"},
-    {"--axes", "LIST", "V", "of step, loading, rate, grains, points, features, ...; default: all"},
-    {"--seeds", "N", "V", "specimens, seeds from that of the case on; default: 4"},
-    {"--refine", "N", "V",
+    {"--model", "NAME", AT(model), 0, "R", "contact model; default: `model` of the case"},
+    {"--model", "NAME", AT(model), 0, "V", "this model alone; default: those that compare runs"},
+    {"-o", "DIR", AT(dir), 0, "V", "folder of results; default: results/<case>"},
+    {"--observable", "NAME", AT(observable), 0, "V", "the result to look at; default: strength"},
+    {"--axes", "LIST", AT(axes), 0, "V",
+     "of step, loading, rate, grains, points, features, ...; default: all"},
+    {"--seeds", "N", AT(seeds), BRC_CONVERGE_MAX_SEEDS, "V",
+     "specimens, seeds from that of the case on; default: 4"},
+    {"--refine", "N", AT(refine), BRC_CONVERGE_MAX_REFINE, "V",
      "loading of the reference finer by this power of 2, half the step; default: 8"},
-    {"--jobs", "N", "V", "runs at a time; default: 1, for times that nothing disturbs"},
-    {"-o", "DIR", "RC", "folder of results; default: results/<case>/<model>, results/<case>"},
-    {"-o", "FILE", "X", "what to write; default: on standard output"},
-    {"--table", "NAME", "X", "CSV of this table: curve, events, bodies, pairs, ..."},
-    {"--format", "FORMAT", "X", "stl: a solid a fragment; tess: the specimen for Neper"},
-    {"--set", "KEY=VALUE", "RCV",
+    {"--jobs", "N", AT(jobs), BRC_PROGRESS_MAX_RUNS, "V",
+     "runs at a time; default: 1, for times that nothing disturbs"},
+    {"-o", "DIR", AT(dir), 0, "RC",
+     "folder of results; default: results/<case>/<model>, results/<case>"},
+    {"-o", "FILE", AT(dir), 0, "X", "what to write; default: on standard output"},
+    {"--table", "NAME", AT(table), 0, "X", "CSV of this table: curve, events, bodies, pairs, ..."},
+    {"--format", "FORMAT", AT(format), 0, "X",
+     "stl: a solid a fragment; tess: the specimen for Neper"},
+    {"--set", "KEY=VALUE", AT(overrides), 0, "RCV",
      "replace a value of the case, as vgcm.e_bar=\"50 GPa\"; repeatable"},
-    {"--resume", NULL, "RC", "go on from the saved state, to the same bits"},
-    {"--resume", NULL, "V", "keep finished runs, go on with the others"},
-    {"--force", NULL, "RCV", "replace results that are there"},
-    {"--force", NULL, "X", "replace the file that is there"},
-    {"--quiet", NULL, "RCV", "no progress, no log lines"},
-    {"--help", NULL, "RCVPMIXT", "this text"},
+    {"--resume", NULL, AT(is_resumed), 0, "RC", "go on from the saved state, to the same bits"},
+    {"--resume", NULL, AT(is_resumed), 0, "V", "keep finished runs, go on with the others"},
+    {"--force", NULL, AT(is_forced), 0, "RCV", "replace results that are there"},
+    {"--force", NULL, AT(is_forced), 0, "X", "replace the file that is there"},
+    {"--quiet", NULL, AT(is_quiet), 0, "RCV", "no progress, no log lines"},
+    {"--help", NULL, AT(is_help), 0, "RCVPMIXT", "this text"},
 };
 enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
@@ -64,53 +270,48 @@ struct command {
     const char *name;
     char letter; /* in option.commands */
     const char *operand, *does, *example, *more;
+    /* One of the two: what is done with the case that the operand names, or without one. */
+    int (*on_case)(struct brc_context *ctx, const struct options *o,
+                   const struct brc_case *run_case);
     int (*act)(struct brc_context *ctx, const struct options *o);
 };
-
-static int act_run(struct brc_context *ctx, const struct options *o);
-static int act_compare(struct brc_context *ctx, const struct options *o);
-static int act_converge(struct brc_context *ctx, const struct options *o);
-static int act_info(struct brc_context *ctx, const struct options *o);
-static int act_export(struct brc_context *ctx, const struct options *o);
-static int act_params(struct brc_context *ctx, const struct options *o);
-static int act_models(struct brc_context *ctx, const struct options *o);
-static int act_tests(struct brc_context *ctx, const struct options *o);
 
 static const struct command commands[] = {
     {"run", 'R', "CASE", "run one model through the test of a case file",
      "breccia run cases/demo_tension.yaml --model vgcm -o results/first --set specimen.seed=2",
      "Writes summary.json, curve.csv, events.csv, state.h5, case.yaml, log and pictures.\n"
      "Ctrl-C saves the state and ends with status 7; the same command with --resume goes on.\n",
-     act_run},
+     run_model, NULL},
     {"compare", 'C', "CASE", "run all models of a case side by side and print a table",
      "breccia compare cases/demo_tension.yaml -o results/pair",
      "Each model's results go to DIR/<model>; the table to DIR/compare.txt, the pictures to DIR.\n",
-     act_compare},
+     compare_case, NULL},
     {"converge", 'V', "CASE", "what accuracy costs: ladders of settings against a finer reference",
      "breccia converge cases/demo_tension.yaml --observable E --axes step,loading --seeds 8",
      "Runs the case with one setting changed at a time, on several specimens, with all models;\n"
      "tells error, its uncertainty and cost of each, and the cheapest within 1 % and 5 %. Writes\n"
      "converge.txt, converge.csv, converge_runs.csv and converge.png; finished runs are never "
      "lost.\n",
-     act_converge},
+     converge_case, NULL},
     {"info", 'I', "FILE", "tell what a saved state or a frame holds",
      "breccia info results/pair/vgcm/state.h5",
-     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n",
+     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n", NULL,
      act_info},
     {"export", 'X', "FILE", "write tables, fragments or the specimen for other programs",
      "breccia export results/pair/vgcm/state.h5 --format stl -o fragments.stl",
-     "FILE is a saved state, or for --format tess a case file, too.\n", act_export},
+     "FILE is a saved state, or for --format tess a case file, too.\n", NULL, act_export},
     {"params", 'P', "[SECTION]",
      "list the keys of a section of the case file: a model, specimen, test, run, output",
-     "breccia params vgcm", "Without a section: all of them.\n", act_params},
-    {"models", 'M', "", "list the contact models", "breccia models", "", act_models},
+     "breccia params vgcm", "Without a section: all of them.\n", NULL, act_params},
+    {"models", 'M', "", "list the contact models", "breccia models", "", NULL, act_models},
     {"tests", 'T', "", "list the tests: keys of `test:` that each uses, and what it measures",
-     "breccia tests", "", act_tests},
+     "breccia tests", "", NULL, act_tests},
 };
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
 /* ---- help ---------------------------------------------------------------------------------- */
 
+/* From the list of errors, in which several share a status: those stand on one line. */
 static void print_statuses(FILE *out)
 {
     int last = -1;
@@ -160,15 +361,6 @@ static void print_command_help(FILE *out, const struct command *c)
 
 /* ---- reading the command line -------------------------------------------------------------- */
 
-static const char *suggest(const char *text, const char *const *names, int n,
-                           char hint[BRC_HINT_SIZE])
-{
-    struct brc_nearest nearest = {.text = text};
-    for (int i = 0; i < n; i++)
-        brc_nearest_add(&nearest, names[i]);
-    return brc_nearest_hint(&nearest, hint);
-}
-
 static const struct option *find_option(const struct command *c, const char *name, size_t length)
 {
     for (int i = 0; i < N_OPTIONS; i++)
@@ -180,89 +372,52 @@ static const struct option *find_option(const struct command *c, const char *nam
 
 static int fail_option(struct brc_context *ctx, const struct command *c, const char *text)
 {
-    const char *names[N_OPTIONS];
     char name[64], hint[BRC_HINT_SIZE];
-    int n = 0;
+    struct brc_nearest nearest = {.text = name};
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
     for (int i = 0; i < N_OPTIONS; i++)
         if (strchr(option_table[i].commands, c->letter))
-            names[n++] = option_table[i].name;
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-    suggest(name, names, n, hint);
+            brc_nearest_add(&nearest, option_table[i].name);
+    brc_nearest_hint(&nearest, hint);
     BRC_FAIL(ctx, BRC_ERR_USAGE, "%s has no option '%s'%s%s", c->name, name, hint,
              *hint ? "" : "; see breccia COMMAND --help");
 }
 
-static int read_count(struct brc_context *ctx, const char *name, const char *value, int largest,
-                      int *count)
-{
-    char *end;
-    long n = strtol(value, &end, 10);
-    if (*end || n < 1 || n > largest)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes a whole number from 1 to %d, not '%.40s'", name,
-                 largest, value);
-    *count = (int)n;
-    return 0;
-}
-
-/* Options of converge alone; false when the name is none. */
-static bool read_converge_option(struct brc_context *ctx, struct options *o, const char *name,
-                                 const char *value, int *code)
-{
-    if (strcmp(name, "--observable") == 0)
-        o->observable = value;
-    else if (strcmp(name, "--axes") == 0)
-        o->axes = value;
-    else if (strcmp(name, "--seeds") == 0)
-        *code = read_count(ctx, name, value, BRC_CONVERGE_MAX_SEEDS, &o->seeds);
-    else if (strcmp(name, "--refine") == 0)
-        *code = read_count(ctx, name, value, BRC_CONVERGE_MAX_REFINE, &o->refine);
-    else if (strcmp(name, "--jobs") == 0)
-        *code = read_count(ctx, name, value, BRC_PROGRESS_MAX_RUNS, &o->jobs);
-    else
-        return false;
-    return true;
-}
-
-static int read_option(struct brc_context *ctx, struct options *o, const char *name,
+/* Puts the value, NULL for a flag, where the table says. */
+static int read_option(struct brc_context *ctx, struct options *o, const struct option *option,
                        const char *value)
 {
-    int code = 0;
-    if (read_converge_option(ctx, o, name, value, &code))
-        return code;
-    if (strcmp(name, "--model") == 0) {
-        o->model = value;
-    } else if (strcmp(name, "-o") == 0) {
-        o->dir = value;
-    } else if (strcmp(name, "--table") == 0) {
-        o->table = value;
-    } else if (strcmp(name, "--format") == 0) {
-        o->format = value;
-    } else if (strcmp(name, "--set") == 0) {
+    void *member = (char *)o + option->member;
+    if (!value) {
+        *(bool *)member = true;
+    } else if (option->largest > 0) {
+        char *end;
+        long n = strtol(value, &end, 10);
+        if (*end || n < 1 || n > option->largest)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes a whole number from 1 to %d, not '%.40s'",
+                     option->name, option->largest, value);
+        *(int *)member = (int)n;
+    } else if (option->member == AT(overrides)) {
         if (o->n_overrides == MAX_OVERRIDES)
             BRC_FAIL(ctx, BRC_ERR_USAGE, "more than %d --set; write a case file", MAX_OVERRIDES);
         o->overrides[o->n_overrides++] = value;
-    } else if (strcmp(name, "--resume") == 0) {
-        o->is_resumed = true;
-    } else if (strcmp(name, "--force") == 0) {
-        o->is_forced = true;
-    } else if (strcmp(name, "--quiet") == 0) {
-        o->is_quiet = true;
     } else {
-        o->is_help = true;
+        *(const char **)member = value;
     }
     return 0;
 }
 
-/* One word of the command line, with the next one where it needs a value. */
+/* One word of the command line, with the next one where it needs a value. Flags are not kept: the
+ * command that goes on says --resume, in place of --force, and is not quiet. */
 static int read_word(struct brc_context *ctx, const struct command *c, char **words, int *i,
                      struct options *o)
 {
-    const char *word = words[*i];
+    char *word = words[*i];
     if (word[0] != '-') {
         if (o->operand || !*c->operand)
             BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes %s, '%.80s' is too much", c->name,
                      *c->operand ? c->operand : "no operand", word);
-        o->operand = word;
+        o->operand = o->kept[o->n_kept++] = word;
         return 0;
     }
     size_t length = strcspn(word, "=");
@@ -272,30 +427,23 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
     const char *value = word[length] == '=' ? word + length + 1 : NULL;
     if (value && !option->value)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes no value", option->name);
-    if (!value && option->value)
-        value = words[*i + 1] ? words[++*i] : NULL;
+    if (option->value)
+        o->kept[o->n_kept++] = word;
+    if (!value && option->value && words[*i + 1])
+        value = o->kept[o->n_kept++] = words[++*i];
     if (option->value && !(value && *value))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a value: %s %s", option->name, option->name,
                  option->value);
-    if (value) {
-        o->given[2 * o->n_given] = option->name;
-        o->given[2 * o->n_given++ + 1] = value;
-    }
-    return read_option(ctx, o, option->name, value);
+    return read_option(ctx, o, option, value);
 }
 
+/* Words are judged together only when all are read: with --help anything may be missing. */
 static int read_words(struct brc_context *ctx, const struct command *c, char **words,
                       struct options *o)
 {
-    size_t n = 0;
-    while (words[n])
-        n++;
-    o->given = brc_alloc(ctx, 2 * n, sizeof *o->given);
-    if (!o->given)
-        return BRC_ERR_MEMORY;
+    bool needs_file = *c->operand && *c->operand != '[';
     for (int i = 0; words[i]; i++)
         BRC_TRY(read_word(ctx, c, words, &i, o));
-    bool needs_file = *c->operand && *c->operand != '[';
     if (o->is_help)
         return 0;
     if (needs_file && !o->operand)
@@ -306,257 +454,60 @@ static int read_words(struct brc_context *ctx, const struct command *c, char **w
     return 0;
 }
 
-/* ---- commands ------------------------------------------------------------------------------ */
+/* ---- the program --------------------------------------------------------------------------- */
 
-/* What commands on a case have in common: it is read, and places in it are told in their messages.
- */
-static int with_case(struct brc_context *ctx, const struct options *o,
-                     int (*command)(struct brc_context *ctx, const struct options *o,
-                                    const struct brc_case *run_case))
+/* Reads the case for a command, and tells in its message where in the case a failure comes from. */
+static int act_on_case(struct brc_context *ctx, const struct options *o, const struct command *c)
 {
     struct brc_case run_case;
     int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
     if (code == 0) {
-        code = command(ctx, o, &run_case);
+        code = c->on_case(ctx, o, &run_case);
         brc_case_locate(ctx, &run_case);
     }
     brc_case_free(&run_case);
     return code;
 }
 
-/* Where results go: as the user says, else by the names of the case and, for a run, of its model.
- */
-static void choose_dir(char dir[BRC_PATH_SIZE], const struct options *o,
-                       const struct brc_case *run_case, const char *model)
+static int act(struct brc_context *ctx, const struct command *c, char **words, struct options *o)
 {
-    if (o->dir)
-        snprintf(dir, BRC_PATH_SIZE, "%s", o->dir);
-    else
-        snprintf(dir, BRC_PATH_SIZE, "results/%s%s%s", run_case->name, *model ? "/" : "", model);
-}
-
-static int make_specimen(struct brc_context *ctx, const struct brc_case *run_case,
-                         struct brc_specimen *specimen)
-{
-    BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, specimen));
-    brc_log(ctx, "%s: %zu grains, %zu facets", run_case->name, specimen->facets.n_cells,
-            specimen->facets.n_facets);
-    brc_specimen_warn(ctx, specimen);
-    return 0;
-}
-
-/* After the signals are held: threads that MPI starts under a launcher must hold them, too. */
-static int start_single(struct brc_context *ctx)
-{
-    struct brc_comm all;
-    BRC_TRY(brc_comm_start(ctx, &all));
-    int size = brc_comm_of(ctx)->size;
-    ctx->comm = NULL;
-    if (size > 1)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "this version runs in one process; start it without mpirun");
-    return 0;
-}
-
-static void print_summary(const struct brc_summary *s, const char *dir)
-{
-    brc_compare_table(stdout, &s, 1);
-    printf("results in %s\n", dir);
-}
-
-static int run_model(struct brc_context *ctx, const struct options *o,
-                     const struct brc_case *run_case)
-{
-    char dir[BRC_PATH_SIZE];
-    struct brc_specimen specimen = {0};
-    struct brc_progress progress;
-    struct brc_summary summary;
-    struct brc_run_options options = {.run_case = run_case,
-                                      .specimen = &specimen,
-                                      .dir = dir,
-                                      .is_resumed = o->is_resumed,
-                                      .is_forced = o->is_forced,
-                                      .progress = &progress};
-    const char *name = o->model ? o->model : run_case->file.head.model;
-    if (!*name)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
-                 o->operand);
-    BRC_TRY(brc_case_model(ctx, name, &options.model));
-    choose_dir(dir, o, run_case, name);
-    BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
-    brc_signals_leave();
-    int code = make_specimen(ctx, run_case, &specimen);
-    if (code == 0) {
-        brc_signals_hold();
-        code = start_single(ctx);
+    o->kept = words;
+    o->n_kept = 1; /* the command itself */
+    BRC_TRY(read_words(ctx, c, words + 1, o));
+    ctx->quiet = o->is_quiet;
+    if (o->is_help) {
+        print_command_help(stdout, c);
+        return 0;
     }
-    if (code == 0) {
-        brc_progress_begin(&progress, stderr, &name, 1, o->is_quiet);
-        code = brc_run(ctx, &options, &summary);
-        brc_progress_end(&progress);
-    }
-    if (code == 0 || code == BRC_ERR_ENERGY)
-        print_summary(&summary, dir);
-    brc_specimen_free(&specimen);
-    return code;
-}
-
-static int act_run(struct brc_context *ctx, const struct options *o)
-{
-    int code = with_case(ctx, o, run_model);
-    brc_comm_end();
-    return code;
-}
-
-static int compare_case(struct brc_context *ctx, const struct options *o,
-                        const struct brc_case *run_case)
-{
-    char dir[BRC_PATH_SIZE];
-    struct brc_specimen specimen = {0};
-    const struct brc_compare_options options = {.run_case = run_case,
-                                                .specimen = &specimen,
-                                                .dir = dir,
-                                                .is_resumed = o->is_resumed,
-                                                .is_forced = o->is_forced,
-                                                .is_quiet = o->is_quiet};
-    choose_dir(dir, o, run_case, "");
-    brc_signals_leave();
-    int code = make_specimen(ctx, run_case, &specimen);
-    if (code == 0) {
-        brc_signals_hold();
-        code = brc_compare(ctx, &options);
-    }
-    if (code == 0)
-        printf("results in %s\n", dir);
-    brc_specimen_free(&specimen);
-    return code;
-}
-
-static int act_compare(struct brc_context *ctx, const struct options *o)
-{
-    return with_case(ctx, o, compare_case);
-}
-
-static int converge_case(struct brc_context *ctx, const struct options *o,
-                         const struct brc_case *run_case)
-{
-    char dir[BRC_PATH_SIZE];
-    const struct brc_converge_options options = {.run_case = run_case,
-                                                 .model = o->model,
-                                                 .dir = dir,
-                                                 .observable =
-                                                     o->observable ? o->observable : "strength",
-                                                 .axes = o->axes ? o->axes : "",
-                                                 .seeds = o->seeds ? o->seeds : 4,
-                                                 .refine = o->refine ? o->refine : 8,
-                                                 .jobs = o->jobs ? o->jobs : 1,
-                                                 .is_resumed = o->is_resumed,
-                                                 .is_forced = o->is_forced};
-    if (options.refine < 2 || (options.refine & (options.refine - 1)) != 0)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
-                 BRC_CONVERGE_MAX_REFINE, options.refine);
-    choose_dir(dir, o, run_case, "");
-    brc_signals_hold();
-    int code = brc_converge(ctx, &options);
-    if (code == 0)
-        printf("results in %s\n", dir);
-    return code;
-}
-
-static int act_converge(struct brc_context *ctx, const struct options *o)
-{
-    return with_case(ctx, o, converge_case);
-}
-
-static int act_info(struct brc_context *ctx, const struct options *o)
-{
-    return brc_info_print(ctx, stdout, o->operand);
-}
-
-static int act_export(struct brc_context *ctx, const struct options *o)
-{
-    const char *what = o->format ? o->format : o->table;
-    if (!what || (o->format && o->table))
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
-    const struct brc_export_options options = {o->operand, o->dir, o->is_forced};
-    return o->table ? brc_export_table(ctx, &options, o->table)
-                    : brc_export_format(ctx, &options, o->format);
-}
-
-static int act_params(struct brc_context *ctx, const struct options *o)
-{
-    const char *names[64];
-    struct brc_param_list list;
-    char hint[BRC_HINT_SIZE];
-    bool is_found = false;
-    int n = 0;
-    for (; n < 64 && brc_case_section(n, &names[n], &list); n++) {
-        if (o->operand && strcmp(o->operand, names[n]) != 0)
-            continue;
-        if (is_found)
-            putchar('\n');
-        brc_params_print(stdout, names[n], list);
-        is_found = true;
-    }
-    if (!is_found)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "no section '%.60s'%s; breccia params lists all", o->operand,
-                 suggest(o->operand, names, n, hint));
-    return 0;
-}
-
-static int act_models(struct brc_context *ctx, const struct options *o)
-{
-    (void)ctx, (void)o;
-    for (int i = 0; i < brc_registry_count(); i++)
-        printf("%-12s %s\n", brc_registry_at(i)->name, brc_registry_at(i)->citation);
-    return 0;
-}
-
-static int act_tests(struct brc_context *ctx, const struct options *o)
-{
-    (void)ctx, (void)o;
-    for (int i = 0; i < brc_rigs_count(); i++) {
-        const struct brc_rig_type *rig = brc_rigs_at(i);
-        printf("%s: %s\n  keys: %s\n", rig->name, rig->meaning, rig->keys);
-        for (int k = 0; k < rig->n_quantities; k++)
-            printf("  %-15s %-3s %s\n", rig->quantities[k].name, rig->quantities[k].unit,
-                   rig->quantities[k].meaning);
-    }
-    return 0;
-}
-
-static int act(struct brc_context *ctx, char **words, struct options *o)
-{
-    const char *names[N_COMMANDS + 2] = {"--help", "--version"};
-    char hint[BRC_HINT_SIZE];
-    for (int i = 0; i < N_COMMANDS; i++) {
-        names[i + 2] = commands[i].name;
-        if (strcmp(words[0], commands[i].name) != 0)
-            continue;
-        o->command = commands[i].name;
-        BRC_TRY(read_words(ctx, &commands[i], words + 1, o));
-        ctx->quiet = o->is_quiet;
-        if (o->is_help)
-            print_command_help(stdout, &commands[i]);
-        return o->is_help ? 0 : commands[i].act(ctx, o);
-    }
-    suggest(words[0], names, N_COMMANDS + 2, hint);
-    BRC_FAIL(ctx, BRC_ERR_USAGE, "no command '%.60s'%s%s", words[0], hint,
-             *hint ? "" : "; see breccia --help");
+    return c->on_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
 }
 
 static int act_first(struct brc_context *ctx, char **words, struct options *o)
 {
+    char hint[BRC_HINT_SIZE];
+    struct brc_nearest nearest = {.text = words[0]};
     if (!words[0]) {
         print_help(stderr);
         return BRC_ERR_USAGE;
     }
-    if (strcmp(words[0], "--help") == 0 || strcmp(words[0], "-h") == 0)
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(words[0], commands[i].name) == 0)
+            return act(ctx, &commands[i], words, o);
+        brc_nearest_add(&nearest, commands[i].name);
+    }
+    if (strcmp(words[0], "--help") == 0 || strcmp(words[0], "-h") == 0) {
         print_help(stdout);
-    else if (strcmp(words[0], "--version") == 0)
+        return 0;
+    }
+    if (strcmp(words[0], "--version") == 0) {
         puts("breccia " BRC_VERSION);
-    else
-        return act(ctx, words, o);
-    return 0;
+        return 0;
+    }
+    brc_nearest_add(&nearest, "--help");
+    brc_nearest_add(&nearest, "--version");
+    brc_nearest_hint(&nearest, hint);
+    BRC_FAIL(ctx, BRC_ERR_USAGE, "no command '%.60s'%s%s", words[0], hint,
+             *hint ? "" : "; see breccia --help");
 }
 
 /* The command that goes on with an interrupted one, or does it anew where nothing was saved. */
@@ -565,10 +516,8 @@ static void print_resume(FILE *out, int code, const struct options *o)
     bool is_saved = code == BRC_ERR_INTERRUPTED;
     fputs(is_saved ? "; go on with:" : "; start again with:", out);
     brc_console_word(out, o->program);
-    brc_console_word(out, o->command);
-    brc_console_word(out, o->operand);
-    for (int i = 0; i < 2 * o->n_given; i++)
-        brc_console_word(out, o->given[i]);
+    for (int i = 0; i < o->n_kept; i++)
+        brc_console_word(out, o->kept[i]);
     if (is_saved || o->is_resumed)
         brc_console_word(out, "--resume");
     else if (o->is_forced)
@@ -583,6 +532,7 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN); /* a file over the allowed size is a failed write like any other */
     if (code == 0)
         code = act_first(&ctx, argv + (argc > 0), &o);
+    brc_comm_end();
     int closed = brc_console_close(&ctx);
     code = code != 0 ? code : closed;
     if (*ctx.message) {
@@ -591,6 +541,5 @@ int main(int argc, char **argv)
             print_resume(stderr, code, &o);
         fputc('\n', stderr);
     }
-    free(o.given);
     return brc_error_exit_status(code);
 }
