@@ -12,9 +12,7 @@ static int run(struct brc_context *ctx, struct brc_case *run_case, const struct 
 {
     struct brc_result result[BRC_MAX_RESULTS];
     BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, specimen));
-    struct brc_test test = brc_case_test(run_case);
-    BRC_TRY(brc_sim_create(ctx, sim, model, brc_case_params(run_case, model), specimen, &test,
-                           &run_case->run));
+    BRC_TRY(brc_case_sim(ctx, run_case, model, specimen, sim));
     while (!brc_rigs_done(sim))
         BRC_TRY(brc_sim_step(sim));
     int n = brc_rigs_results(sim, result);

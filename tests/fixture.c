@@ -210,9 +210,7 @@ void fixture_case(struct fixture *f, const struct brc_model *model, const char *
     CHECK_OK(&f->ctx, brc_case_read(&f->ctx, &run_case, path, overrides, n));
     CHECK_OK(&f->ctx, brc_specimen_create(&f->ctx, &run_case.specimen, &f->specimen));
     f->has_specimen = true;
-    const struct brc_test test = brc_case_test(&run_case);
-    int code = brc_sim_create(&f->ctx, &f->sim, model, brc_case_params(&run_case, model),
-                              &f->specimen, &test, &run_case.run);
+    int code = brc_case_sim(&f->ctx, &run_case, model, &f->specimen, &f->sim);
     brc_case_free(&run_case);
     CHECK_OK(&f->ctx, code);
     f->has_sim = true;

@@ -38,6 +38,11 @@ static int make_room(struct brc_context *ctx, struct brc_case *run_case)
     return 0;
 }
 
+static struct brc_test test_of(const struct brc_case *run_case)
+{
+    return brc_rigs_test(&run_case->test, run_case->rig_params[run_case->test.kind]);
+}
+
 /* The polygon that stands for a circle is the test's choice where the case makes none. */
 static void choose_sides(struct brc_case *run_case)
 {
@@ -84,7 +89,7 @@ static int check_sections(struct brc_context *ctx, struct brc_case *run_case)
     BRC_TRY(brc_casefile_finish(ctx, &run_case->file, names, (size_t)i));
     for (int k = 0; k < i; k++)
         BRC_TRY(brc_applies_check(ctx, run_case, k, brc_case_section_values(run_case, k)));
-    struct brc_test test = brc_case_test(run_case);
+    struct brc_test test = test_of(run_case);
     int code = brc_rig_check(ctx, &test);
     if (code != 0)
         brc_case_locate(ctx, run_case);
@@ -153,6 +158,15 @@ int brc_case_change(struct brc_context *ctx, const struct brc_case *run_case,
         if (run_case->file.entries[i].is_override)
             BRC_TRY(repeat_override(ctx, &out->file, &run_case->file.entries[i]));
     return finish(ctx, out, overrides, n);
+}
+
+int brc_case_sim(struct brc_context *ctx, const struct brc_case *run_case,
+                 const struct brc_model *model, const struct brc_specimen *specimen,
+                 struct brc_sim *sim)
+{
+    struct brc_test test = test_of(run_case);
+    return brc_sim_create(ctx, sim, model, brc_case_params(run_case, model), specimen, &test,
+                          &run_case->run);
 }
 
 void brc_case_free(struct brc_case *run_case)

@@ -36,6 +36,11 @@ int brc_case_parse(struct brc_context *ctx, struct brc_case *run_case, const cha
 int brc_case_change(struct brc_context *ctx, const struct brc_case *run_case,
                     const char *const *overrides, int n, struct brc_case *out);
 void brc_case_free(struct brc_case *run_case);
+/* A simulation of the case with one of its models on the specimen that it has made, which must
+ * outlive it. */
+int brc_case_sim(struct brc_context *ctx, const struct brc_case *run_case,
+                 const struct brc_model *model, const struct brc_specimen *specimen,
+                 struct brc_sim *sim);
 /* Puts "file:line: " before a message about bad input that names a key as section.key: where the
  * case gives that key, or its section, its value. For failures after brc_case_read. */
 void brc_case_locate(struct brc_context *ctx, const struct brc_case *run_case);

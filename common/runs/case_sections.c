@@ -69,11 +69,6 @@ const void *brc_case_values(const struct brc_case *run_case, int i)
     return i < N_COMMON ? (const char *)run_case + s.offset : s.values;
 }
 
-struct brc_test brc_case_test(const struct brc_case *run_case)
-{
-    return brc_rigs_test(&run_case->test, run_case->rig_params[run_case->test.kind]);
-}
-
 int brc_case_find_section(const char *name, struct brc_param_list *list)
 {
     const char *section;

@@ -26,7 +26,4 @@ int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
 /* The filled parameters of a model. */
 const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model);
 
-/* The test that the case asks for. */
-struct brc_test brc_case_test(const struct brc_case *run_case);
-
 #endif

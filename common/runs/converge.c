@@ -4,7 +4,7 @@
  * same run share it. A run that its setting has spoilt counts as done, without a value. */
 #include "common/runs/converge.h"
 
-#include "common/base/signals.h"
+#include "common/base/grow.h"
 #include "common/base/text_file.h"
 #include "common/runs/child.h"
 #include "common/runs/converge_axes.h"
@@ -13,7 +13,6 @@
 #include "common/runs/converge_table.h"
 #include "common/runs/run.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
@@ -21,15 +20,11 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_JOBS = BRC_PROGRESS_MAX_RUNS };
-
-/* A run that a child does. */
+/* A run that is missing. */
 struct task {
-    const struct brc_converge_options *options;
     struct brc_converge_model *model;
     struct brc_converge_setting *setting;
     int seed; /* number of the specimen */
-    char dir[BRC_PATH_SIZE];
 };
 
 struct ladder {
@@ -37,11 +32,12 @@ struct ladder {
     struct brc_converge_study study;
     struct brc_converge_axes axes;
     struct brc_converge_record record;
-    struct task task[MAX_JOBS];
-    struct brc_child child[MAX_JOBS];
-    size_t n_grains;      /* of the case's own specimen */
-    int n_done, n_wanted; /* runs of the present phase */
-    double weight_left;   /* their expected processor time, s */
+    size_t n_grains; /* of the case's own specimen */
+    /* the present phase: what was missing as it began, and how far it has come */
+    struct task *task;
+    size_t n_tasks, cap_tasks;
+    int n_done;
+    double weight_left; /* expected processor time of the rest, s */
 };
 
 /* ---- what can be refused ------------------------------------------------------------------- */
@@ -81,11 +77,8 @@ static int find_observable(struct brc_context *ctx, struct brc_converge_study *s
 static int try_model(struct ladder *l, const struct brc_specimen *specimen,
                      struct brc_converge_model *m)
 {
-    const struct brc_case *run_case = l->study.options->run_case;
     struct brc_sim sim;
-    struct brc_test test = brc_case_test(run_case);
-    BRC_TRY(brc_sim_create(l->ctx, &sim, m->model, brc_case_params(run_case, m->model), specimen,
-                           &test, &run_case->run));
+    BRC_TRY(brc_case_sim(l->ctx, l->study.options->run_case, m->model, specimen, &sim));
     m->test = sim.rig.params;
     m->specimen = brc_facets_hash(&specimen->facets);
     l->study.n_results = brc_rigs_results(&sim, l->study.results);
@@ -139,7 +132,7 @@ static int prepare(struct ladder *l)
     const struct brc_converge_options *o = study->options;
     BRC_TRY(check_options(l->ctx, o));
     BRC_TRY(choose_models(l));
-    BRC_TRY(brc_converge_read_axes(l->ctx, o, study->model, study->n_models, &l->axes));
+    BRC_TRY(brc_converge_read_axes(l->ctx, study, &l->axes));
     BRC_TRY(check_folder(l));
     BRC_TRY(try_models(l));
     BRC_TRY(find_observable(l->ctx, study));
@@ -159,21 +152,41 @@ static int check_place(struct brc_context *ctx, const struct brc_run_options *o)
     return code == BRC_ERR_INPUT ? (ctx->code = BRC_ERR_USAGE) : code;
 }
 
-static int run_task(struct brc_context *ctx, const void *user, struct brc_progress *progress,
+/* Where the run of a task lies while it is unfinished: by its key, so that it is found again
+ * whatever is asked for the next time. */
+static int task_folder(struct brc_context *ctx, const struct ladder *l, const struct task *t,
+                       char dir[BRC_PATH_SIZE])
+{
+    char name[64];
+    snprintf(name, sizeof name, "converge_unfinished/%016" PRIx64, t->setting->run[t->seed].key);
+    return brc_folder_path(ctx, l->study.options->dir, name, dir);
+}
+
+static const char *name_of(const void *user, int i)
+{
+    const struct ladder *l = user;
+    return l->task[i].model->model->name;
+}
+
+static int run_task(struct brc_context *ctx, const void *user, int i, struct brc_progress *progress,
                     struct brc_summary *out)
 {
-    const struct task *t = user;
+    const struct ladder *l = user;
+    const struct task *t = &l->task[i];
+    const struct brc_converge_options *o = l->study.options;
     struct brc_specimen specimen = {0};
     struct brc_case run_case;
-    bool has_begun = brc_run_has_begun(t->dir);
-    bool goes_on = t->options->is_resumed && has_begun && brc_folder_has(t->dir, "state.h5");
-    int code = brc_converge_case(ctx, t->options->run_case, t->setting, t->seed, &run_case);
+    char dir[BRC_PATH_SIZE];
+    BRC_TRY(task_folder(ctx, l, t, dir));
+    bool has_begun = brc_run_has_begun(dir);
+    bool goes_on = o->is_resumed && has_begun && brc_folder_has(dir, "state.h5");
+    int code = brc_converge_case(ctx, o->run_case, t->setting, t->seed, &run_case);
     if (code == 0)
         code = brc_specimen_create(ctx, &run_case.specimen, &specimen);
     const struct brc_run_options options = {.run_case = &run_case,
                                             .model = t->model->model,
                                             .specimen = &specimen,
-                                            .dir = t->dir,
+                                            .dir = dir,
                                             .is_resumed = goes_on,
                                             .is_forced = has_begun && !goes_on,
                                             .progress = progress};
@@ -186,31 +199,35 @@ static int run_task(struct brc_context *ctx, const void *user, struct brc_progre
     return code;
 }
 
-static void log_run(const struct ladder *l, const struct task *t,
-                    const struct brc_converge_run *run, const char *message)
+static void log_run(const struct ladder *l, const struct task *t, const struct brc_outcome *outcome)
 {
     const struct brc_result *what = &l->study.results[l->study.observable];
-    char left[32], value[64];
+    const struct brc_converge_run *run = &t->setting->run[t->seed];
+    double value = run->result[l->study.observable];
+    char left[32], said[sizeof outcome->message];
     brc_progress_duration(l->weight_left / l->study.options->jobs, left, sizeof left);
-    if (isfinite(run->result[l->study.observable]))
-        snprintf(value, sizeof value, "%s %.4g %s", what->name, run->result[l->study.observable],
+    if (outcome->code != 0)
+        snprintf(said, sizeof said, "failed: %.9000s", outcome->message);
+    else if (isfinite(value))
+        snprintf(said, sizeof said, "%s %.4g %s", what->name, value,
                  strcmp(what->unit, "1") == 0 ? "" : what->unit);
     else
-        snprintf(value, sizeof value, "no %s", what->name);
-    brc_log(l->ctx, "%d of %d  %s  %s %s  seed %d  %s%s  %" PRId64 " steps  %.2f s  about %s left",
-            l->n_done, l->n_wanted, t->model->model->name, t->setting->axis, t->setting->label,
-            l->study.options->run_case->specimen.seed + t->seed, *message ? "failed: " : "",
-            *message ? message : value, run->steps, run->cpu_s, left);
+        snprintf(said, sizeof said, "no %s", what->name);
+    brc_log(l->ctx, "%d of %zu  %s  %s %s  seed %d  %s  %" PRId64 " steps  %.2f s  about %s left",
+            l->n_done, l->n_tasks, t->model->model->name, t->setting->axis, t->setting->label,
+            l->study.options->run_case->specimen.seed + t->seed, said, run->steps, run->cpu_s,
+            left);
 }
 
 /* What a run costs, by what the case's own runs have cost. */
 static double expected(const struct brc_converge_model *m, const struct brc_converge_setting *s)
 {
+    const struct brc_converge_run *run = m->setting[BRC_CONVERGE_AT_CASE].run;
     double sum = 0;
     int n = 0;
     for (int i = 0; i < BRC_CONVERGE_MAX_SEEDS; i++)
-        if (m->setting[BRC_CONVERGE_AT_CASE].run[i].is_done) {
-            sum += m->setting[BRC_CONVERGE_AT_CASE].run[i].cpu_s;
+        if (run[i].is_done) {
+            sum += run[i].cpu_s;
             n++;
         }
     return n > 0 ? s->weight * sum / n : 0;
@@ -224,153 +241,93 @@ static int fail_interrupted(struct ladder *l)
 }
 
 /* A run that its setting has spoilt has no value but is done; other failures end all. */
-static int read_outcome(struct ladder *l, int slot)
+static int read_outcome(struct brc_context *ctx, void *user, int i, const struct brc_outcome *o)
 {
-    struct task *t = &l->task[slot];
-    const struct brc_outcome *o = &l->child[slot].outcome;
+    struct ladder *l = user;
+    struct task *t = &l->task[i];
     struct brc_converge_run *run = &t->setting->run[t->seed];
+    char dir[BRC_PATH_SIZE];
     bool is_spoilt = o->code == BRC_ERR_BLOWUP || o->code == BRC_ERR_ENERGY ||
                      o->code == BRC_ERR_INPUT || o->code == BRC_ERR_GEOMETRY;
     if (o->code == BRC_ERR_NOT_BEGUN)
         return fail_interrupted(l);
     if (o->code != 0 && !is_spoilt)
-        BRC_FAIL(l->ctx, o->code, "%s: %s", t->model->model->name, o->message);
+        BRC_FAIL(ctx, o->code, "%s: %s", name_of(l, i), o->message);
     run->steps = o->summary.steps;
     run->dt = o->summary.dt;
     run->cpu_s = o->summary.cpu_s;
     snprintf(run->ended_by, sizeof run->ended_by, "%s", o->code ? "failure" : o->summary.ended_by);
-    for (int i = 0; i < l->study.n_results; i++)
-        run->result[i] = o->code ? NAN : o->summary.results[i].value;
-    BRC_TRY(brc_converge_record_add(l->ctx, &l->record, t->model->model->name,
+    for (int k = 0; k < l->study.n_results; k++)
+        run->result[k] = o->code ? NAN : o->summary.results[k].value;
+    BRC_TRY(brc_converge_record_add(ctx, &l->record, name_of(l, i),
                                     l->study.options->run_case->specimen.seed + t->seed, t->setting,
                                     run));
     run->is_done = true;
-    BRC_TRY(brc_run_remove(l->ctx, t->dir));
+    BRC_TRY(task_folder(ctx, l, t, dir));
+    BRC_TRY(brc_run_remove(ctx, dir));
     l->n_done++;
     l->weight_left = fmax(l->weight_left - expected(t->model, t->setting), 0);
-    log_run(l, t, run, o->code ? o->message : "");
+    log_run(l, t, o);
     return 0;
 }
 
 /* ---- all runs ------------------------------------------------------------------------------ */
 
-/* A run with the same parameters goes on now. */
-static bool is_running(const struct ladder *l, uint64_t key)
+/* Takes from the record what is done; true when the run has to be done. */
+static bool is_missing(const struct ladder *l, struct brc_converge_run *run)
 {
-    for (int i = 0; i < l->study.options->jobs; i++)
-        if (l->child[i].pipe >= 0 && l->task[i].setting->run[l->task[i].seed].key == key)
+    const struct brc_converge_run *done =
+        run->is_done ? NULL : brc_converge_record_find(&l->record, run->key);
+    if (done)
+        *run = *done;
+    return !run->is_done;
+}
+
+/* An earlier setting of the model is the same run on this specimen. */
+static bool is_repeated(const struct task *t)
+{
+    for (const struct brc_converge_setting *s = t->model->setting; s < t->setting; s++)
+        if (s->run[t->seed].key == t->setting->run[t->seed].key)
             return true;
     return false;
 }
 
-/* Takes from the record what is done; true when the run has to be done. */
-static bool is_missing(const struct ladder *l, struct brc_converge_run *run)
+/* Lists what is missing of all models' settings first to end, specimen after specimen: so a ladder
+ * that is stopped has whole specimens, whose differences count. */
+static int list_tasks(struct ladder *l, int first, int end)
 {
-    if (!run->is_done) {
-        const struct brc_converge_run *done = brc_converge_record_find(&l->record, run->key);
-        if (done)
-            *run = *done;
-    }
-    return !run->is_done;
-}
-
-static int start_task(struct ladder *l, int slot, const struct task *task)
-{
-    struct task *t = &l->task[slot];
-    *t = *task;
-    t->options = l->study.options;
-    uint64_t key = t->setting->run[t->seed].key;
-    char name[64];
-    snprintf(name, sizeof name, "converge_unfinished/%016" PRIx64, key);
-    BRC_TRY(brc_folder_path(l->ctx, t->options->dir, name, t->dir));
-    snprintf(l->child[slot].name, sizeof l->child[slot].name, "%s", t->model->model->name);
-    const struct brc_child_work work = {run_task, t};
-    return brc_children_start(l->ctx, l->child, l->study.options->jobs, slot, &work);
-}
-
-/* Waits a little; takes the outcomes of runs that have ended. */
-static int listen(struct ladder *l)
-{
-    bool was_running[MAX_JOBS];
-    int n = l->study.options->jobs;
-    for (int i = 0; i < n; i++)
-        was_running[i] = l->child[i].pipe >= 0;
-    BRC_TRY(brc_children_listen(l->ctx, l->child, n, NULL));
-    for (int i = 0; i < n; i++)
-        if (was_running[i] && l->child[i].pipe < 0)
-            BRC_TRY(read_outcome(l, i));
-    return 0;
-}
-
-/* Starts the run unless its like is done or going on; waits for a free slot first. */
-static int offer(struct ladder *l, const struct task *task)
-{
-    struct brc_converge_run *run = &task->setting->run[task->seed];
-    int n = l->study.options->jobs;
-    while (is_missing(l, run) && !brc_signals_held()) {
-        int slot = 0;
-        while (slot < n && l->child[slot].pipe >= 0)
-            slot++;
-        if (slot < n && !is_running(l, run->key))
-            return start_task(l, slot, task);
-        BRC_TRY(listen(l));
-    }
-    return 0;
-}
-
-/* Calls act for the runs of all models' settings first to end, specimen after specimen. */
-static int each_run(struct ladder *l, int first, int end,
-                    int (*act)(struct ladder *l, const struct task *task))
-{
+    l->n_tasks = 0;
+    l->weight_left = 0;
     for (int seed = 0; seed < l->study.options->seeds; seed++)
         for (int i = 0; i < l->study.n_models; i++) {
             struct brc_converge_model *m = &l->study.model[i];
             for (int k = first; k < m->n && k < end; k++) {
                 const struct task task = {.model = m, .setting = &m->setting[k], .seed = seed};
-                BRC_TRY(act(l, &task));
+                if (!is_missing(l, &task.setting->run[seed]) || is_repeated(&task))
+                    continue;
+                BRC_GROW(l->ctx, l->task, l->cap_tasks, l->n_tasks + 1);
+                l->task[l->n_tasks++] = task;
+                l->weight_left += expected(m, task.setting);
             }
         }
     return 0;
 }
 
-/* Counts a run that is missing; of those with the same parameters the first. */
-static int count(struct ladder *l, const struct task *task)
-{
-    uint64_t key = task->setting->run[task->seed].key;
-    if (!is_missing(l, &task->setting->run[task->seed]))
-        return 0;
-    for (const struct brc_converge_setting *s = task->model->setting; s < task->setting; s++)
-        if (s->run[task->seed].key == key)
-            return 0;
-    l->n_wanted++;
-    l->weight_left += expected(task->model, task->setting);
-    return 0;
-}
-
-static int fill(struct ladder *l, const struct task *task)
-{
-    struct brc_converge_run *run = &task->setting->run[task->seed];
-    if (is_missing(l, run))
-        return fail_interrupted(l);
-    return 0;
-}
-
-/* Does what is missing of some settings. */
+/* Does what is missing of some settings. Listed again, nothing is, unless a signal has come between
+ * two runs. */
 static int run_phase(struct ladder *l, int first, int end)
 {
-    int n = l->study.options->jobs;
-    l->n_done = l->n_wanted = 0;
-    l->weight_left = 0;
-    BRC_TRY(each_run(l, first, end, count));
-    int code = each_run(l, first, end, offer);
-    while (code == 0 && brc_children_running(l->child, n) > 0)
-        code = listen(l);
-    if (code != 0)
-        brc_children_stop(l->child, n);
-    while (brc_children_running(l->child, n) > 0 &&
-           brc_children_listen(l->ctx, l->child, n, NULL) == 0)
-        ;
-    return code ? code : each_run(l, first, end, fill);
+    l->n_done = 0;
+    BRC_TRY(list_tasks(l, first, end));
+    const struct brc_queue queue = {.n = (int)l->n_tasks,
+                                    .at_once = l->study.options->jobs,
+                                    .user = l,
+                                    .name = name_of,
+                                    .act = run_task,
+                                    .end = read_outcome};
+    BRC_TRY(brc_queue_run(l->ctx, &queue));
+    BRC_TRY(list_tasks(l, first, end));
+    return l->n_tasks > 0 ? fail_interrupted(l) : 0;
 }
 
 /* Of the case on the first specimen, up to the peak: more specimens leave the ladder as it is. */
@@ -432,7 +389,6 @@ int brc_converge(struct brc_context *ctx, const struct brc_converge_options *opt
         return BRC_ERR_MEMORY;
     l->ctx = ctx;
     l->study.options = options;
-    brc_children_init(l->child, MAX_JOBS);
     int code = prepare(l);
     if (code == 0)
         code = run_all(l);
@@ -441,6 +397,7 @@ int brc_converge(struct brc_context *ctx, const struct brc_converge_options *opt
     brc_converge_record_close(&l->record);
     for (int i = 0; i < l->study.n_models; i++)
         free(l->study.model[i].setting);
+    free(l->task);
     free(l);
     return code;
 }

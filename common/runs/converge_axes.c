@@ -12,122 +12,50 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Ladders of every case. */
-static const char *const ladders[] = {"step", "loading", "rate", "grains"};
-enum { N_LADDERS = sizeof ladders / sizeof ladders[0] };
-
-enum { MAX_LINES = 16 }; /* overrides of a run */
-enum { COARSEST = 64 };  /* loading and rate, times that of the case */
+enum { COARSEST = 64 }; /* loading and rate, times that of the case */
 static const double REFERENCE_STEP = 0.5;
 
-/* ---- names --------------------------------------------------------------------------------- */
-
-static const struct brc_param *find_choice(const struct brc_model *model, const char *key)
-{
-    const struct brc_param *p = brc_params_find(model->params, key);
-    return p && (p->kind == BRC_CHOICE || p->kind == BRC_FLAG) ? p : NULL;
-}
-
-static bool is_axis(const struct brc_converge_model *models, int n_models, const char *name)
-{
-    for (int i = 0; i < N_LADDERS; i++)
-        if (strcmp(name, ladders[i]) == 0)
-            return true;
-    for (int i = 0; i < n_models; i++)
-        if (find_choice(models[i].model, name))
-            return true;
-    return false;
-}
-
-static int add_axis(struct brc_context *ctx, struct brc_converge_axes *axes, const char *name,
-                    size_t length)
-{
-    for (int i = 0; i < axes->n; i++)
-        if (strlen(axes->name[i]) == length && strncmp(axes->name[i], name, length) == 0)
-            return 0;
-    if (axes->n == BRC_CONVERGE_MAX_AXES)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "--axes: more than %d", BRC_CONVERGE_MAX_AXES);
-    snprintf(axes->name[axes->n++], sizeof axes->name[0], "%.*s", (int)length, name);
-    return 0;
-}
-
-static int fail_axis(struct brc_context *ctx, const struct brc_converge_model *models, int n_models,
-                     const char *name)
-{
-    char all[BRC_NAMES_SIZE] = "";
-    for (int i = 0; i < N_LADDERS; i++)
-        brc_names_add(all, sizeof all, ladders[i]);
-    for (int i = 0; i < n_models; i++) {
-        const struct brc_param_list list = models[i].model->params;
-        for (int k = 0; k < list.n; k++)
-            if (find_choice(models[i].model, list.params[k].key) &&
-                !strstr(all, list.params[k].key))
-                brc_names_add(all, sizeof all, list.params[k].key);
-    }
-    BRC_FAIL(ctx, BRC_ERR_USAGE, "--axes: no axis '%.60s'; there are: %s", name, all);
-}
-
-int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *options,
-                           const struct brc_converge_model *models, int n_models,
-                           struct brc_converge_axes *axes)
-{
-    axes->n = 0;
-    for (const char *at = options->axes; *at;) {
-        size_t length = strcspn(at, ",");
-        char name[BRC_CASEFILE_KEY_SIZE];
-        snprintf(name, sizeof name, "%.*s", (int)length, at);
-        if (!is_axis(models, n_models, name))
-            return fail_axis(ctx, models, n_models, name);
-        BRC_TRY(add_axis(ctx, axes, at, length));
-        at += length + (at[length] != '\0');
-    }
-    if (axes->n > 0)
-        return 0;
-    for (int i = 0; i < N_LADDERS; i++)
-        BRC_TRY(add_axis(ctx, axes, ladders[i], strlen(ladders[i])));
-    for (int i = 0; i < n_models; i++)
-        for (int k = 0; k < models[i].model->params.n; k++) {
-            const struct brc_param *p = &models[i].model->params.params[k];
-            if (p->flags & BRC_PARAM_AXIS)
-                BRC_TRY(add_axis(ctx, axes, p->key, strlen(p->key)));
-        }
-    return 0;
-}
+/* An axis that every case has: how its key follows from a factor on what the case says. */
+struct ladder {
+    const char *name;
+    enum brc_converge_role role;
+    int n_factors; /* 0: by twos, from one over --refine to COARSEST */
+    double factors[5];
+    const char *why; /* may be left out, as `put` says false of its first factor */
+    bool (*put)(struct brc_converge_setting *s, const struct brc_case *run_case,
+                const struct brc_converge_model *m, double factor);
+};
 
 /* ---- one setting --------------------------------------------------------------------------- */
 
 static void add_line(struct brc_converge_setting *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* An override, a line of the setting's text. */
 static void add_line(struct brc_converge_setting *s, const char *format, ...)
 {
-    char line[160];
     va_list args;
     va_start(args, format);
-    vsnprintf(line, sizeof line, format, args);
+    vsnprintf(s->line[s->n_lines++], sizeof s->line[0], format, args);
     va_end(args);
-    size_t used = strlen(s->text);
-    snprintf(s->text + used, sizeof s->text - used, "%s\n", line);
 }
 
 int brc_converge_case(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_converge_setting *s, int i, struct brc_case *out)
 {
     /* files for a look at a run are not wanted */
-    const char *line[MAX_LINES] = {"output.plots=off", "output.frames=0", "output.frame_strain=0",
-                                   "output.frame_steps=0"};
-    char text[sizeof s->text], seed[64], *rest = text;
+    const char *line[BRC_CONVERGE_MAX_LINES + 5] = {
+        "output.plots=off", "output.frames=0", "output.frame_strain=0", "output.frame_steps=0"};
+    char seed[64];
     int n = 4;
     snprintf(seed, sizeof seed, "specimen.seed=%d", run_case->specimen.seed + i);
     if (i > 0) /* seeds of a file have no number */
         line[n++] = seed;
-    memcpy(text, s->text, sizeof text);
-    while (n < MAX_LINES && (line[n] = strtok_r(rest, "\n", &rest)))
-        n++;
+    for (int k = 0; k < s->n_lines; k++)
+        line[n++] = s->line[k];
     return brc_case_change(ctx, run_case, line, n, out);
 }
 
+/* Of all that a run hangs on. The version is a part of it: another one may compute otherwise. */
 static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_converge_model *m, uint64_t *key)
 {
@@ -142,12 +70,17 @@ static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
     return 0;
 }
 
-/* Judges the setting on all specimens; *is_good tells whether its values are in range. */
-static int check(struct brc_context *ctx, const struct brc_converge_options *options,
-                 const struct brc_converge_model *m, struct brc_converge_setting *s, bool *is_good)
+/* Adds the setting unless the case refuses its values, on any specimen: a rung out of range is no
+ * reason to give up the others. */
+static int add(struct brc_context *ctx, const struct brc_converge_options *options,
+               struct brc_converge_model *m, const struct brc_converge_setting *setting)
 {
-    *is_good = true;
-    for (int i = 0; i < options->seeds && *is_good; i++) {
+    if (m->n == BRC_CONVERGE_MAX_SETTINGS)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "more than %d settings of %s; name fewer axes", m->n,
+                 m->model->name);
+    struct brc_converge_setting *s = &m->setting[m->n];
+    *s = *setting;
+    for (int i = 0; i < options->seeds; i++) {
         struct brc_context own = BRC_CONTEXT_INIT;
         struct brc_case run_case;
         int code = brc_converge_case(&own, options->run_case, s, i, &run_case);
@@ -156,33 +89,20 @@ static int check(struct brc_context *ctx, const struct brc_converge_options *opt
         brc_case_free(&run_case);
         if (code == BRC_ERR_INPUT) {
             brc_log(ctx, "%s %s is left out: %s", s->axis, s->label, own.message);
-            *is_good = false;
-        } else if (code != 0) {
-            BRC_FAIL(ctx, code, "%s", own.message);
+            return 0;
         }
+        if (code != 0)
+            BRC_FAIL(ctx, code, "%s", own.message);
     }
-    return 0;
-}
-
-static int add(struct brc_context *ctx, const struct brc_converge_options *options,
-               struct brc_converge_model *m, const struct brc_converge_setting *s)
-{
-    bool is_good;
-    if (m->n == BRC_CONVERGE_MAX_SETTINGS)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "more than %d settings of %s; name fewer axes", m->n,
-                 m->model->name);
-    m->setting[m->n] = *s;
-    BRC_TRY(check(ctx, options, m, &m->setting[m->n], &is_good));
-    m->n += is_good;
+    m->n++;
     return 0;
 }
 
 static struct brc_converge_setting make(const char *axis, enum brc_converge_role role,
                                         double factor)
 {
-    struct brc_converge_setting s = {.role = role, .fineness = 1 / factor, .weight = 1 / factor};
-    snprintf(s.axis, sizeof s.axis, "%s", axis);
-    return s;
+    return (struct brc_converge_setting){
+        .axis = axis, .role = role, .fineness = 1 / factor, .weight = 1 / factor};
 }
 
 static void label(struct brc_converge_setting *s, const char *key, double value)
@@ -192,137 +112,68 @@ static void label(struct brc_converge_setting *s, const char *key, double value)
 
 /* ---- ladders ------------------------------------------------------------------------------- */
 
-/* The step, times a factor, as a part of the stable limit; scaled masses go with its square. */
-static void put_step(struct brc_converge_setting *s, const struct brc_run_params *run,
-                     double factor)
+/* The step, times a factor, as a part of the stable limit; scaled masses go with its square. Up to
+ * twice the step of the case; what is above the stable limit is told by its runs. A step that is
+ * given is an error above the limit, and one that is a part of it stays below it. */
+static bool put_step(struct brc_converge_setting *s, const struct brc_case *run_case,
+                     const struct brc_converge_model *m, double factor)
 {
+    const struct brc_run_params *run = &run_case->run;
+    (void)m;
     if (run->regime == BRC_QUASI_STATIC) {
         double margin = run->mass_margin / (factor * factor);
         add_line(s, "run.mass_margin=%.9g", margin);
         label(s, "mass_margin", margin);
-    } else if (run->dt > 0) {
+        return true;
+    }
+    if (run->dt > 0) {
         add_line(s, "run.dt=%.9g s", factor * run->dt);
         label(s, "dt", factor * run->dt);
-    } else {
-        add_line(s, "run.dt_margin=%.9g", factor * run->dt_margin);
-        label(s, "dt_margin", factor * run->dt_margin);
+        return factor <= 1;
     }
+    add_line(s, "run.dt_margin=%.9g", factor * run->dt_margin);
+    label(s, "dt_margin", factor * run->dt_margin);
+    return factor * run->dt_margin <= 0.95;
 }
 
-static void put_target(struct brc_converge_setting *s, const struct brc_test_params *t,
-                       double factor)
+static bool put_target(struct brc_converge_setting *s, const struct brc_case *run_case,
+                       const struct brc_converge_model *m, double factor)
 {
+    (void)run_case;
     add_line(s, "test.loading=adaptive");
-    add_line(s, "test.target=%.9g", factor * t->target);
+    add_line(s, "test.target=%.9g", factor * m->test.target);
     /* below the target of the case the smallest rate must not hold the rate up */
-    if (factor < 1 && t->rate_min > 0)
-        add_line(s, "test.rate_min=%.9g 1/s", factor * t->rate_min);
-    label(s, "target", factor * t->target);
+    if (factor < 1 && m->test.rate_min > 0)
+        add_line(s, "test.rate_min=%.9g 1/s", factor * m->test.rate_min);
+    label(s, "target", factor * m->test.target);
+    return true;
 }
 
-static void put_rate(struct brc_converge_setting *s, double rate)
-{
-    add_line(s, "test.loading=fixed");
-    add_line(s, "test.rate=%.9g 1/s", rate);
-    label(s, "rate", rate);
-}
-
-/* The case's own kind of loading, times a factor. */
-static void put_loading(struct brc_converge_setting *s, const struct brc_test_params *t,
-                        double factor)
-{
-    if (t->loading == BRC_LOADING_ADAPTIVE)
-        put_target(s, t, factor);
-    else
-        put_rate(s, factor * t->rate);
-}
-
-/* Up to twice the step of the case; what is above the stable limit is told by its runs. A step
- * that is given is an error above the limit, and one that is a part of it stays below it. */
-static double largest_step(const struct brc_run_params *run)
-{
-    if (run->regime == BRC_QUASI_STATIC)
-        return 2;
-    return run->dt > 0 ? 1 : 0.95 / run->dt_margin;
-}
-
-static int add_step(struct brc_context *ctx, const struct brc_converge_options *options,
-                    struct brc_converge_model *m)
-{
-    static const double factors[] = {0.25, 0.5, 1, 1.41421356, 2};
-    const struct brc_run_params *run = &options->run_case->run;
-    for (int i = 0; i < 5; i++) {
-        struct brc_converge_setting s = make("step", BRC_CONVERGE_LADDER, factors[i]);
-        if (factors[i] > largest_step(run))
-            break;
-        put_step(&s, run, factors[i]);
-        BRC_TRY(add(ctx, options, m, &s));
-    }
-    return 0;
-}
-
-static int add_loading(struct brc_context *ctx, const struct brc_converge_options *options,
-                       struct brc_converge_model *m)
-{
-    for (int k = 1; k <= COARSEST * options->refine; k *= 2) {
-        double factor = (double)k / options->refine;
-        struct brc_converge_setting s = make("loading", BRC_CONVERGE_LADDER, factor);
-        put_target(&s, &m->test, factor);
-        BRC_TRY(add(ctx, options, m, &s));
-    }
-    return 0;
-}
-
-/* Two digits. */
-static double rounded(double rate)
+/* Fixed loading around the rate of the case, or around the mean rate that its adaptive loading has
+ * found, to two digits: so the ladder stays where more specimens change that mean a little. */
+static bool put_rate(struct brc_converge_setting *s, const struct brc_case *run_case,
+                     const struct brc_converge_model *m, double factor)
 {
     char text[32];
-    snprintf(text, sizeof text, "%.1e", rate);
-    return strtod(text, NULL);
-}
-
-/* Around the rate of the case, or the mean rate that its adaptive loading has found. */
-static int add_rate(struct brc_context *ctx, const struct brc_converge_options *options,
-                    struct brc_converge_model *m)
-{
-    bool is_fixed = m->test.loading == BRC_LOADING_FIXED;
-    double base = is_fixed ? m->test.rate : rounded(m->mean_rate);
-    if (!(base > 0)) {
-        brc_log(ctx, "%s: no peak was found, so the axis rate is left out", m->model->name);
-        return 0;
+    double rate = m->test.rate;
+    (void)run_case;
+    if (m->test.loading == BRC_LOADING_ADAPTIVE) {
+        snprintf(text, sizeof text, "%.1e", m->mean_rate);
+        rate = strtod(text, NULL);
     }
-    for (int k = 1; k <= COARSEST * options->refine; k *= 2) {
-        double factor = (double)k / options->refine;
-        struct brc_converge_setting s = make("rate", BRC_CONVERGE_LADDER, factor);
-        put_rate(&s, factor * base);
-        BRC_TRY(add(ctx, options, m, &s));
-    }
-    return 0;
-}
-
-/* ---- choices and grains -------------------------------------------------------------------- */
-
-static int add_choice(struct brc_context *ctx, const struct brc_converge_options *options,
-                      struct brc_converge_model *m, const char *key)
-{
-    const struct brc_param *p = find_choice(m->model, key);
-    if (!p)
-        return 0;
-    for (const char *at = p->choices; *at;) {
-        struct brc_converge_setting s = make(key, BRC_CONVERGE_CHOICE, 1);
-        size_t length = strcspn(at, "|");
-        add_line(&s, "%s.%s=%.*s", m->model->name, key, (int)length, at);
-        snprintf(s.label, sizeof s.label, "%s=%.*s", key, (int)length, at);
-        BRC_TRY(add(ctx, options, m, &s));
-        at += length + (at[length] != '\0');
-    }
-    return 0;
+    add_line(s, "test.loading=fixed");
+    add_line(s, "test.rate=%.9g 1/s", factor * rate);
+    label(s, "rate", factor * rate);
+    return rate > 0;
 }
 
 /* Grains larger by a factor; false where the specimen has none to choose. */
-static bool put_grains(struct brc_converge_setting *s, const struct brc_specimen_params *p,
-                       double factor)
+static bool put_grains(struct brc_converge_setting *s, const struct brc_case *run_case,
+                       const struct brc_converge_model *m, double factor)
 {
+    const struct brc_specimen_params *p = &run_case->specimen;
+    (void)m;
+    s->weight = pow(factor, -4); /* as many grains, and as many steps across one */
     if (p->grains == BRC_GRAINS_PACKING) {
         add_line(s, "specimen.diameter_min=%.9g m", factor * p->diameter_min);
         add_line(s, "specimen.diameter_max=%.9g m", factor * p->diameter_max);
@@ -335,53 +186,148 @@ static bool put_grains(struct brc_converge_setting *s, const struct brc_specimen
         add_line(s, "specimen.cells=%.0f, %.0f, %.0f", n[0], n[1], n[2]);
     } else if (p->grains == BRC_GRAINS_MESH) {
         add_line(s, "specimen.triangle_area=%.9g m2", factor * factor * p->triangle_area);
-    } else {
-        return false;
     }
     snprintf(s->label, sizeof s->label, "size x %.4g", factor);
-    return true;
+    return s->n_lines > 0;
 }
 
-static int add_grains(struct brc_context *ctx, const struct brc_converge_options *options,
-                      struct brc_converge_model *m)
+static const struct ladder ladders[] = {
+    {"step", BRC_CONVERGE_LADDER, 5, {0.25, 0.5, 1, 1.41421356, 2}, NULL, put_step},
+    {"loading", BRC_CONVERGE_LADDER, 0, {0}, NULL, put_target},
+    {"rate", BRC_CONVERGE_LADDER, 0, {0}, "no peak was found", put_rate},
+    {"grains", BRC_CONVERGE_GRAINS, 3, {0.8, 1, 1.25}, "its grains are given", put_grains}};
+enum { N_LADDERS = sizeof ladders / sizeof ladders[0] };
+
+static int add_ladder(struct brc_context *ctx, const struct brc_converge_options *options,
+                      struct brc_converge_model *m, const struct ladder *l)
 {
-    static const double factors[] = {0.8, 1, 1.25};
-    for (int i = 0; i < 3; i++) {
-        struct brc_converge_setting s = make("grains", BRC_CONVERGE_GRAINS, factors[i]);
-        s.weight = pow(factors[i], -4); /* as many grains, and as many steps across one */
-        if (put_grains(&s, &options->run_case->specimen, factors[i]))
+    double factor = 1.0 / options->refine;
+    for (int i = 0; l->n_factors > 0 ? i < l->n_factors : factor <= COARSEST; i++, factor *= 2) {
+        if (l->n_factors > 0)
+            factor = l->factors[i];
+        struct brc_converge_setting s = make(l->name, l->role, factor);
+        if (l->put(&s, options->run_case, m, factor)) {
             BRC_TRY(add(ctx, options, m, &s));
-        else if (i == 0)
-            brc_log(ctx, "the grains of this specimen are given, so the axis grains is left out");
+            continue;
+        }
+        if (i == 0)
+            brc_log(ctx, "%s: %s, so the axis %s is left out", m->model->name, l->why, l->name);
+        break;
     }
     return 0;
 }
 
+/* ---- axes ---------------------------------------------------------------------------------- */
+
+static bool is_choice(const struct brc_param *p)
+{
+    return p->kind == BRC_CHOICE || p->kind == BRC_FLAG;
+}
+
+/* Every value of a model's choice, whatever the case says. */
+static int add_choice(struct brc_context *ctx, const struct brc_converge_options *options,
+                      struct brc_converge_model *m, const char *key)
+{
+    const struct brc_param *p = brc_params_find(m->model->params, key);
+    if (!p || !is_choice(p)) /* of another model */
+        return 0;
+    for (const char *at = p->choices; *at;) {
+        struct brc_converge_setting s = make(key, BRC_CONVERGE_CHOICE, 1);
+        size_t length = strcspn(at, "|");
+        snprintf(s.label, sizeof s.label, "%s=%.*s", key, (int)length, at);
+        add_line(&s, "%s.%s", m->model->name, s.label);
+        BRC_TRY(add(ctx, options, m, &s));
+        at += length + (at[length] != '\0');
+    }
+    return 0;
+}
+
+static const char *find_axis(const struct brc_converge_axes *axes, const char *name)
+{
+    for (int i = 0; i < axes->n; i++)
+        if (strcmp(axes->name[i], name) == 0)
+            return axes->name[i];
+    return NULL;
+}
+
+static int add_axis(struct brc_context *ctx, struct brc_converge_axes *axes, const char *name)
+{
+    if (find_axis(axes, name))
+        return 0;
+    if (axes->n == BRC_CONVERGE_MAX_AXES)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "--axes: more than %d", BRC_CONVERGE_MAX_AXES);
+    axes->name[axes->n++] = name;
+    return 0;
+}
+
+/* All that there are, or those that are meant when none is named. */
+static int list_axes(struct brc_context *ctx, const struct brc_converge_study *study, bool is_all,
+                     struct brc_converge_axes *axes)
+{
+    axes->n = 0;
+    for (int i = 0; i < N_LADDERS; i++)
+        BRC_TRY(add_axis(ctx, axes, ladders[i].name));
+    for (int i = 0; i < study->n_models; i++)
+        for (int k = 0; k < study->model[i].model->params.n; k++) {
+            const struct brc_param *p = &study->model[i].model->params.params[k];
+            if (is_all ? is_choice(p) : p->flags & BRC_PARAM_AXIS)
+                BRC_TRY(add_axis(ctx, axes, p->key));
+        }
+    return 0;
+}
+
+int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_study *study,
+                           struct brc_converge_axes *axes)
+{
+    struct brc_converge_axes all;
+    char names[BRC_NAMES_SIZE] = "", name[BRC_CASEFILE_KEY_SIZE];
+    BRC_TRY(list_axes(ctx, study, true, &all));
+    axes->n = 0;
+    for (const char *at = study->options->axes; *at;) {
+        size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        const char *found = find_axis(&all, name);
+        for (int i = 0; !found && i < all.n; i++)
+            brc_names_add(names, sizeof names, all.name[i]);
+        if (!found)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, "--axes: no axis '%.60s'; there are: %s", name, names);
+        BRC_TRY(add_axis(ctx, axes, found));
+        at += length + (at[length] != '\0');
+    }
+    return axes->n > 0 ? 0 : list_axes(ctx, study, false, axes);
+}
+
 /* ---- all of a model ------------------------------------------------------------------------ */
+
+/* The reference and its coarser likes, as their names say. Where a model has approximations of its
+ * own the reference does without. */
+static void put_reference(struct brc_converge_setting *s, const struct brc_converge_options *o,
+                          const struct brc_converge_model *m, int which)
+{
+    double loading = (which == BRC_CONVERGE_AT_LOADING ? 2.0 : 1.0) / o->refine;
+    double step = which == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
+    *s = make("reference", BRC_CONVERGE_REFERENCE, 1);
+    put_step(s, o->run_case, m, step);
+    if (m->test.loading == BRC_LOADING_ADAPTIVE)
+        put_target(s, o->run_case, m, loading);
+    else
+        put_rate(s, o->run_case, m, loading);
+    if (brc_params_find(m->model->params, "evaluation"))
+        add_line(s, "%s.evaluation=literal", m->model->name);
+    s->weight = 1 / (loading * step);
+    snprintf(s->label, sizeof s->label, "loading x 1/%g step x %g", 1 / loading, step);
+}
 
 int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                 struct brc_converge_model *m)
 {
-    double finest = 1.0 / options->refine;
     for (int i = 0; i < BRC_CONVERGE_N_FIXED; i++) {
-        struct brc_converge_setting s = make(
-            "reference", i == BRC_CONVERGE_AT_CASE ? BRC_CONVERGE_CASE : BRC_CONVERGE_REFERENCE, 1);
-        if (i == BRC_CONVERGE_AT_CASE) {
-            snprintf(s.axis, sizeof s.axis, "case");
-            snprintf(s.label, sizeof s.label, "as written");
-        } else {
-            double factor = i == BRC_CONVERGE_AT_LOADING ? 2 * finest : finest;
-            double step = i == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
-            put_step(&s, &options->run_case->run, step);
-            put_loading(&s, &m->test, factor);
-            if (find_choice(m->model, "evaluation"))
-                add_line(&s, "%s.evaluation=literal", m->model->name);
-            s.weight = 1 / (factor * step);
-            snprintf(s.label, sizeof s.label, "loading x 1/%g step x %g", 1 / factor, step);
-        }
-        int before = m->n;
+        struct brc_converge_setting s = make("case", BRC_CONVERGE_CASE, 1);
+        snprintf(s.label, sizeof s.label, "as written");
+        if (i != BRC_CONVERGE_AT_CASE)
+            put_reference(&s, options, m, i);
         BRC_TRY(add(ctx, options, m, &s));
-        if (m->n == before)
+        if (m->n == i)
             BRC_FAIL(ctx, BRC_ERR_INPUT, "the reference %s is out of range; use another --refine",
                      s.label);
     }
@@ -391,14 +337,11 @@ int brc_converge_first_settings(struct brc_context *ctx, const struct brc_conver
 int brc_converge_axis_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                const struct brc_converge_axes *axes, struct brc_converge_model *m)
 {
-    int (*const act[N_LADDERS])(struct brc_context *, const struct brc_converge_options *,
-                                struct brc_converge_model *) = {add_step, add_loading, add_rate,
-                                                                add_grains};
     for (int i = 0; i < axes->n; i++) {
         int k = 0;
-        while (k < N_LADDERS && strcmp(axes->name[i], ladders[k]) != 0)
+        while (k < N_LADDERS && strcmp(axes->name[i], ladders[k].name) != 0)
             k++;
-        BRC_TRY(k < N_LADDERS ? act[k](ctx, options, m)
+        BRC_TRY(k < N_LADDERS ? add_ladder(ctx, options, m, &ladders[k])
                               : add_choice(ctx, options, m, axes->name[i]));
     }
     return 0;

@@ -5,9 +5,9 @@
 
 #include "common/runs/converge_study.h"
 
-/* The names of a list, or all that the case has; an unknown one is an error that names all. */
-int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_options *options,
-                           const struct brc_converge_model *models, int n_models,
+/* The names that the options list, or those that are meant when they list none; an unknown one is
+ * an error that names all. The models of the study must be known. */
+int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_study *study,
                            struct brc_converge_axes *axes);
 /* The first settings; then, when the mean rate is known, those of the axes. A value out of a key's
  * range is left out, with a log line. */

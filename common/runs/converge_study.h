@@ -16,6 +16,8 @@ enum brc_converge_role {
     BRC_CONVERGE_GRAINS     /* other specimens */
 };
 
+enum { BRC_CONVERGE_MAX_LINES = 6 };
+
 /* A run of a setting on one specimen, as the record keeps it. */
 struct brc_converge_run {
     uint64_t key; /* of all parameters of the run */
@@ -27,10 +29,11 @@ struct brc_converge_run {
 };
 
 struct brc_converge_setting {
-    char axis[BRC_CASEFILE_KEY_SIZE];
+    const char *axis; /* constant text; settings of one axis follow each other */
     enum brc_converge_role role;
     char label[128]; /* the key that the axis is about, and its value; no comma */
-    char text[512];  /* overrides "section.key=value", one a line */
+    char line[BRC_CONVERGE_MAX_LINES][160]; /* overrides "section.key=value" */
+    int n_lines;
     double fineness; /* on its ladder; the case has 1 */
     double weight;   /* expected cost over that of the case */
     struct brc_converge_run run[BRC_CONVERGE_MAX_SEEDS];
@@ -56,7 +59,7 @@ struct brc_converge_model {
 
 struct brc_converge_axes {
     int n;
-    char name[BRC_CONVERGE_MAX_AXES][BRC_CASEFILE_KEY_SIZE];
+    const char *name[BRC_CONVERGE_MAX_AXES]; /* constant texts */
 };
 
 /* What all runs measure: names and units of the results. */

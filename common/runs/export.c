@@ -49,9 +49,7 @@ static int load_sim(struct brc_context *ctx, const char *path, struct loaded *l)
     const struct brc_model *model;
     BRC_TRY(read_model(ctx, path, &model));
     BRC_TRY(brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen));
-    struct brc_test test = brc_case_test(&l->run_case);
-    BRC_TRY(brc_sim_create(ctx, &l->sim, model, brc_case_params(&l->run_case, model), &l->specimen,
-                           &test, &l->run_case.run));
+    BRC_TRY(brc_case_sim(ctx, &l->run_case, model, &l->specimen, &l->sim));
     return brc_h5_load(ctx, path, &l->sim, &none);
 }
 

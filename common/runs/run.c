@@ -452,9 +452,7 @@ static int prepare(struct run *r)
     r->parameters = brc_case_text(r->ctx, o->run_case, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
-    struct brc_test test = brc_case_test(o->run_case);
-    BRC_TRY(brc_sim_create(r->ctx, &r->sim, o->model, brc_case_params(o->run_case, o->model),
-                           o->specimen, &test, &o->run_case->run));
+    BRC_TRY(brc_case_sim(r->ctx, o->run_case, o->model, o->specimen, &r->sim));
     if (brc_signals_held())
         BRC_FAIL(r->ctx, BRC_ERR_NOT_BEGUN,
                  "interrupted before the first step; nothing was saved, and %s is as it was",

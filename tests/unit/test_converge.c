@@ -89,8 +89,7 @@ static void put(struct brc_converge_model *m, enum brc_converge_role role, const
                 double fineness, const double value[N_SEEDS], double cpu_s)
 {
     struct brc_converge_setting *s = &m->setting[m->n];
-    *s = (struct brc_converge_setting){.role = role, .fineness = fineness};
-    snprintf(s->axis, sizeof s->axis, "%s", axis);
+    *s = (struct brc_converge_setting){.axis = axis, .role = role, .fineness = fineness};
     snprintf(s->label, sizeof s->label, "number=%d", m->n);
     for (int i = 0; i < N_SEEDS; i++) {
         s->run[i] = (struct brc_converge_run){.key = (uint64_t)(100 * m->n + i),
