@@ -123,7 +123,7 @@ static int restore(struct brc_sim *sim, void *state)
 static const char *choice(const struct poly_params *p, const char *key, char *buffer, size_t size)
 {
     const struct brc_param_list list = BRC_PARAMS(param_list, struct poly_params);
-    return brc_params_choice(brc_params_find(list, key), p, buffer, size);
+    return brc_params_text(brc_params_find(list, key), p, buffer, size);
 }
 
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)

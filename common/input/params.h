@@ -18,6 +18,7 @@
 #include "common/base/names.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum brc_param_kind {
     BRC_REAL,   /* double, SI; NAN: `auto`, where that is the default */
@@ -107,6 +108,16 @@ struct brc_param_list {
     LIST(BRC_PARAM_L_REAL, BRC_PARAM_L_INT, BRC_PARAM_L_CHOICE, BRC_PARAM_L_FLAG, \
          BRC_PARAM_L_TEXT, BRC_PARAM_L_REAL3, BRC_PARAM_L_INT3)
 
+/* An SI unit behind a number: for a pure number, whose unit is "1", nothing follows. */
+static inline const char *brc_unit_shown(const char *unit)
+{
+    return strcmp(unit, "1") == 0 ? "" : unit;
+}
+static inline const char *brc_unit_blank(const char *unit)
+{
+    return *brc_unit_shown(unit) ? " " : "";
+}
+
 /* Fills a parameter struct with the defaults; keys without a default are left zero. */
 int brc_params_defaults(struct brc_context *ctx, struct brc_param_list list, void *values);
 /* Sets one key from text ("48.8 GPa"); where names the place for the message ("file.yaml:12"). */
@@ -115,9 +126,6 @@ int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *va
 /* Text of a value, in the unit of its default where it has one; returns buffer. */
 const char *brc_params_text(const struct brc_param *p, const void *values, char *buffer,
                             size_t size);
-/* Name of the present choice of a CHOICE or FLAG. */
-const char *brc_params_choice(const struct brc_param *p, const void *values, char *buffer,
-                              size_t size);
 /* Value of a quantity text ("48.8 GPa") in the SI unit given. */
 int brc_params_quantity(struct brc_context *ctx, const char *text, const char *unit, double *value,
                         const char *where);
@@ -131,8 +139,5 @@ const char *brc_params_hint(struct brc_param_list list, const char *key, char hi
 const struct brc_param *brc_params_meant(struct brc_param_list list, const char *key);
 /* Reference table: key, default, allowed, unit, meaning. */
 void brc_params_print(FILE *out, const char *title, struct brc_param_list list);
-/* Judges a declaration: keys unique and in snake case, units known, ranges readable, defaults in
- * range, and each default the same after writing and reading. For tests over every list. */
-int brc_params_check_list(struct brc_context *ctx, const char *title, struct brc_param_list list);
 
 #endif

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which key was meant by one that is not in a list. */
+/* Which key was meant by one that is not in a list: by its spelling, or by its words, which may
+ * stand in the meaning of a key that is called otherwise. For messages alone: nothing is ever read
+ * under a name that was guessed. */
 #include "common/input/params.h"
 
-#include <ctype.h>
-#include <string.h>
+#include <strings.h>
 
+/* Letters: shorter words (of, dt, max) stand in many meanings. */
 enum { LEAST_WORD = 4 };
 
 const char *brc_params_hint(struct brc_param_list list, const char *key, char hint[BRC_HINT_SIZE])
@@ -15,17 +17,12 @@ const char *brc_params_hint(struct brc_param_list list, const char *key, char hi
     return brc_nearest_hint(&nearest, hint);
 }
 
-/* Is the word in the text, without regard to case? */
+/* Is the word in the text, without regard to case? strcasestr is not POSIX. */
 static bool holds_word(const char *text, const char *word, size_t n)
 {
-    for (; *text; text++) {
-        size_t i = 0;
-        while (i < n && tolower((unsigned char)text[i]) == tolower((unsigned char)word[i]))
-            i++;
-        if (i == n)
-            return true;
-    }
-    return false;
+    while (*text && strncasecmp(text, word, n) != 0)
+        text++;
+    return *text != '\0';
 }
 
 const struct brc_param *brc_params_meant(struct brc_param_list list, const char *key)

@@ -4,51 +4,37 @@
 
 #include <string.h>
 
-/* What a value may be, for the reference. */
-static const char *allowed_text(const struct brc_param *p)
+enum { N_CELLS = 4 };
+
+/* Key, default, allowed and unit, as they are shown. */
+static void make_cells(const struct brc_param *p, const char *cell[N_CELLS])
 {
-    if (p->kind == BRC_CHOICE || p->kind == BRC_FLAG)
-        return p->choices;
+    cell[0] = p->key;
+    cell[1] = !p->default_text ? "required" : *p->default_text ? p->default_text : "-";
+    cell[2] = p->choices ? p->choices : p->range ? p->range : "(-inf, inf)";
+    cell[3] = *brc_unit_shown(p->unit) ? p->unit : "-";
     if (p->kind == BRC_TEXT)
-        return "text";
-    return p->range ? p->range : "(-inf, inf)";
-}
-
-static const char *default_shown(const struct brc_param *p)
-{
-    if (!p->default_text)
-        return "required";
-    return *p->default_text ? p->default_text : "-";
-}
-
-static const char *unit_shown(const struct brc_param *p)
-{
-    return strcmp(p->unit, "1") == 0 ? "-" : p->unit;
-}
-
-static void widen(int *width, const char *text)
-{
-    if ((int)strlen(text) > *width)
-        *width = (int)strlen(text);
+        cell[2] = "text";
 }
 
 void brc_params_print(FILE *out, const char *title, struct brc_param_list list)
 {
-    int w[4] = {3, 7, 7, 4};
+    int w[N_CELLS] = {3, 7, 7, 4}; /* of the headings */
+    const char *cell[N_CELLS];
     for (int i = 0; i < list.n; i++) {
-        widen(&w[0], list.params[i].key);
-        widen(&w[1], default_shown(&list.params[i]));
-        widen(&w[2], allowed_text(&list.params[i]));
-        widen(&w[3], unit_shown(&list.params[i]));
+        make_cells(&list.params[i], cell);
+        for (int k = 0; k < N_CELLS; k++)
+            if ((int)strlen(cell[k]) > w[k])
+                w[k] = (int)strlen(cell[k]);
     }
     fprintf(out, "%s\n  %-*s  %-*s  %-*s  %-*s  %s\n", title, w[0], "key", w[1], "default", w[2],
             "allowed", w[3], "unit", "meaning");
     for (int i = 0; i < list.n; i++) {
         const struct brc_param *p = &list.params[i];
-        fprintf(out, "  %-*s  %-*s  %-*s  %-*s  %s%s%s%s%s\n", w[0], p->key, w[1], default_shown(p),
-                w[2], allowed_text(p), w[3], unit_shown(p), p->meaning,
-                p->applies ? " [only with " : "", p->applies ? p->applies : "",
-                p->applies ? "]" : "",
+        make_cells(p, cell);
+        fprintf(out, "  %-*s  %-*s  %-*s  %-*s  %s%s%s%s%s\n", w[0], cell[0], w[1], cell[1], w[2],
+                cell[2], w[3], cell[3], p->meaning, p->applies ? " [only with " : "",
+                p->applies ? p->applies : "", p->applies ? "]" : "",
                 p->flags & BRC_PARAM_MAY_CHANGE ? " [may change with --resume]" : "");
     }
 }

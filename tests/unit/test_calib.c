@@ -6,6 +6,7 @@
 #include "calib/objective.h"
 #include "common/engine/model.h"
 #include "tests/near.h"
+#include "tests/param_lists.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -330,7 +331,7 @@ static void guesses_fit_the_models(void **state)
     struct calib_rock rock = {25.8e9, 0.2, 7e6, 122e6, 21e6, 0.9, false};
     struct calib_guess g;
     (void)state;
-    CHECK_OK(&ctx, brc_params_check_list(&ctx, "guess", calib_guess_param_list));
+    CHECK_OK(&ctx, param_list_check(&ctx, "guess", calib_guess_param_list));
     for (int i = 0; i < brc_registry_count(); i++) {
         const struct brc_model *model = brc_registry_at(i);
         if (strcmp(model->name, "vgcm") == 0)
