@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* YAML events to a flat list of entries, with the bytes where each stands: the writer puts values
  * back in their place. Anchors, tags and several documents are refused: a case is data that people
- * read. Knows the keys of no section but the top level's. */
+ * read. Called through casefile.h by whoever has a case; knows the keys of no section but the top
+ * level's. */
 #include "common/input/casefile.h"
 
+#include "common/base/grow.h"
 #include "common/base/input_file.h"
 
 #include <yaml.h>
@@ -37,10 +39,11 @@ struct reader {
 
 /* ---- bytes --------------------------------------------------------------------------------- */
 
-/* Bytes of the UTF-8 character at s, 0 for an invalid or a control character. */
+/* Bytes of the UTF-8 character at s, 0 for an invalid or a control character. libyaml would find
+ * the same, but name a byte and no line, and values of --set do not pass it. */
 static size_t utf8_length(const unsigned char *s, size_t left)
 {
-    static const uint32_t lowest[] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t lowest[] = {0, 0, 0x80, 0x800, 0x10000}; /* no longer than needed */
     size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc0 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
     if (n == 0 || n > left || s[0] > 0xf4)
         return 0;
@@ -57,12 +60,18 @@ static size_t utf8_length(const unsigned char *s, size_t left)
     return code < lowest[n] || is_control || is_surrogate || is_mark ? 0 : n;
 }
 
+/* Bytes up to the first that starts no character, size when all do. */
+static size_t good_bytes(const char *text, size_t size)
+{
+    size_t i = 0;
+    for (size_t n = 1; i < size && n > 0; i += n)
+        n = utf8_length((const unsigned char *)text + i, size - i);
+    return i;
+}
+
 bool brc_casefile_is_text(const char *text)
 {
-    size_t size = strlen(text), n = 1;
-    for (size_t i = 0; i < size && n > 0; i += n)
-        n = utf8_length((const unsigned char *)text + i, size - i);
-    return n > 0;
+    return good_bytes(text, strlen(text)) == strlen(text);
 }
 
 static int check_bytes(struct brc_context *ctx, const char *path, const char *text, size_t size)
@@ -71,21 +80,26 @@ static int check_bytes(struct brc_context *ctx, const char *path, const char *te
     if (size > BRC_CASEFILE_MAX_BYTES)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: the case file is larger than %d bytes", path,
                  BRC_CASEFILE_MAX_BYTES);
-    for (size_t i = 0; i < size;) {
-        size_t n = utf8_length((const unsigned char *)text + i, size - i);
-        if (n == 0)
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s:%d: byte 0x%02x starts no valid UTF-8 text or is a control character; "
-                     "save the file as plain UTF-8 without byte order mark",
-                     path, line, (unsigned char)text[i]);
+    size_t good = good_bytes(text, size);
+    if (good == size)
+        return 0;
+    for (size_t i = 0; i < good; i++)
         line += text[i] == '\n';
-        i += n;
-    }
-    return 0;
+    BRC_FAIL(ctx, BRC_ERR_INPUT,
+             "%s:%d: byte 0x%02x starts no valid UTF-8 text or is a control character; save the "
+             "file as plain UTF-8 without byte order mark",
+             path, line, (unsigned char)text[good]);
+}
+
+static char *copy_text(struct brc_context *ctx, const char *text, size_t size)
+{
+    char *copy = brc_alloc(ctx, size + 1, 1);
+    return copy ? memcpy(copy, text, size) : NULL;
 }
 
 /* ---- building the list --------------------------------------------------------------------- */
 
+/* Dots stand between section and key in messages and in --set, so that no key may hold one. */
 static int check_name(struct brc_context *ctx, const char *name, size_t n, const char *where)
 {
     if (n == 0 || n >= BRC_CASEFILE_KEY_SIZE || memchr(name, '.', n) || memchr(name, '\0', n))
@@ -95,6 +109,9 @@ static int check_name(struct brc_context *ctx, const char *name, size_t n, const
     return 0;
 }
 
+/* A section that --set has opened may be opened by the file as well, since a case is also read anew
+ * from its text; two mappings of the file may not share a name: readers of YAML keep the one or the
+ * other. */
 static int add_section(struct brc_context *ctx, struct brc_casefile *c, const char *name, int line)
 {
     const struct brc_casefile_place *old = brc_casefile_find_section(c, name);
@@ -102,49 +119,16 @@ static int add_section(struct brc_context *ctx, struct brc_casefile *c, const ch
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s:%d: %s: given twice, first in line %d; keep one of the two", c->path, line,
                  name, old->line);
-    if (c->n_sections == c->cap_sections) {
-        size_t cap = c->cap_sections ? 2 * c->cap_sections : 8;
-        void *block = brc_realloc(ctx, c->sections, cap, sizeof *c->sections);
-        if (!block)
-            return BRC_ERR_MEMORY;
-        c->sections = block;
-        c->cap_sections = cap;
-    }
+    BRC_GROW(ctx, c->sections, c->cap_sections, c->n_sections + 1);
     struct brc_casefile_place *s = &c->sections[c->n_sections++];
+    *s = (struct brc_casefile_place){.line = line};
     snprintf(s->name, sizeof s->name, "%s", name);
-    s->line = line;
     return 0;
 }
 
-static int check_entry(struct brc_context *ctx, const struct brc_casefile *c,
-                       const struct brc_casefile_entry *e, const char *where)
-{
-    if (c->n == BRC_CASEFILE_MAX_ENTRIES)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: more than %d keys in one case", where,
-                 BRC_CASEFILE_MAX_ENTRIES);
-    for (size_t i = 0; i < c->n && !e->is_override; i++)
-        if (strcmp(c->entries[i].section, e->section) == 0 &&
-            strcmp(c->entries[i].key, e->key) == 0)
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: %s%s%s: given twice, first in line %d; keep one of the two", where,
-                     e->section, *e->section ? "." : "", e->key, c->entries[i].line);
-    return 0;
-}
-
-static int grow_entries(struct brc_context *ctx, struct brc_casefile *c)
-{
-    size_t cap = c->cap ? 2 * c->cap : 32;
-    if (c->n < c->cap)
-        return 0;
-    void *block = brc_realloc(ctx, c->entries, cap, sizeof *c->entries);
-    if (!block)
-        return BRC_ERR_MEMORY;
-    c->entries = block;
-    c->cap = cap;
-    return 0;
-}
-
-/* Adds section.key, or section.parent_key where parent is not NULL, with a copy of text. */
+/* Adds section.key, or section.parent_key where there is a parent, with a copy of text. Whether a
+ * key is given twice is found when its section is read: only the section's list knows which names
+ * mean the same. */
 static int add_entry(struct brc_context *ctx, struct brc_casefile *c, const char *const name[3],
                      const char *text, int line)
 {
@@ -159,12 +143,13 @@ static int add_entry(struct brc_context *ctx, struct brc_casefile *c, const char
                  name[0], parent, key, BRC_CASEFILE_KEY_SIZE - 1);
     if (strcmp(key, "rule") == 0)
         snprintf(e.parent, sizeof e.parent, "%s", parent);
-    BRC_TRY(check_entry(ctx, c, &e, where));
-    BRC_TRY(grow_entries(ctx, c));
-    e.text = brc_alloc(ctx, strlen(text) + 1, 1);
+    if (c->n == BRC_CASEFILE_MAX_ENTRIES)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: more than %d keys in one case", where,
+                 BRC_CASEFILE_MAX_ENTRIES);
+    BRC_GROW(ctx, c->entries, c->cap, c->n + 1);
+    e.text = copy_text(ctx, text, strlen(text));
     if (!e.text)
         return BRC_ERR_MEMORY;
-    strcpy(e.text, text);
     c->entries[c->n++] = e;
     return 0;
 }
@@ -190,12 +175,20 @@ static size_t byte_at(struct reader *r, const yaml_mark_t *mark)
     return r->n_bytes;
 }
 
-/* A block scalar ends on the line behind its own. */
+/* A block scalar ends on the line behind its own, a value in braces before the blanks that follow:
+ * neither line breaks nor blanks belong to what the writer replaces. */
 static void end_value(struct reader *r, const yaml_mark_t *mark)
 {
     r->end = byte_at(r, mark);
     while (r->end > r->begin && strchr(" \t\r\n", r->c->text[r->end - 1]))
         r->end--;
+}
+
+/* The value has been read: a key may follow. */
+static void end_key(struct level *level)
+{
+    level->key[0] = '\0';
+    level->has_values = true;
 }
 
 /* The key whose value comes now: an entry at the level it belongs to. */
@@ -211,8 +204,7 @@ static int add_value(struct reader *r, const char *text, int line)
     e->begin = r->begin;
     e->end = r->end;
     e->indent = r->indent;
-    top->key[0] = '\0';
-    top->has_values = true;
+    end_key(top);
     return 0;
 }
 
@@ -224,6 +216,42 @@ static int add_item(struct reader *r, const char *text)
         return BRC_ERR_MEMORY;
     r->sequence = longer;
     strcat(strcat(longer, old ? ", " : ""), text);
+    return 0;
+}
+
+static int read_key(struct reader *r, const yaml_event_t *event, int line)
+{
+    struct level *top = &r->level[r->depth - 1];
+    const char *text = (const char *)event->data.scalar.value;
+    char where[BRC_CASEFILE_WHERE_SIZE];
+    BRC_TRY(check_name(r->ctx, text, event->data.scalar.length,
+                       brc_casefile_where(r->c, line, false, where)));
+    snprintf(top->key, sizeof top->key, "%s", text);
+    top->line = line;
+    top->column = (int)event->start_mark.column;
+    top->key_begin = byte_at(r, &event->start_mark);
+    return 0;
+}
+
+/* A key without a value is an empty section where it can be one. A number as a key is the second
+ * half of one with a decimal comma, `{length: 1,5 m}`: to YAML that is two keys. */
+static int read_null(struct reader *r)
+{
+    struct level *top = &r->level[r->depth - 1];
+    if (isdigit((unsigned char)top->key[0]))
+        BRC_FAIL(r->ctx, BRC_ERR_INPUT,
+                 "%s:%d: '%s' follows a comma: in braces and brackets a comma ends a value, so "
+                 "write numbers with a decimal point",
+                 r->c->path, top->line, top->key);
+    if (r->depth > 1 || brc_params_find(brc_casefile_param_list, top->key))
+        BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: %s: has no value; write one or leave the key out",
+                 r->c->path, top->line, top->key);
+    BRC_TRY(add_section(r->ctx, r->c, top->key, top->line));
+    struct brc_casefile_place *s = &r->c->sections[r->c->n_sections - 1];
+    s->form = BRC_CASEFILE_NULL;
+    s->begin = r->begin;
+    s->end = r->end;
+    end_key(top);
     return 0;
 }
 
@@ -245,34 +273,10 @@ static int read_scalar(struct reader *r, const yaml_event_t *event, int line)
     end_value(r, &event->end_mark);
     if (r->is_sequence)
         return add_item(r, text);
-    if (top->key[0] == '\0') {
-        char where[BRC_CASEFILE_WHERE_SIZE];
-        BRC_TRY(check_name(r->ctx, text, n, brc_casefile_where(r->c, line, false, where)));
-        snprintf(top->key, sizeof top->key, "%s", text);
-        top->line = line;
-        top->column = (int)event->start_mark.column;
-        top->key_begin = byte_at(r, &event->start_mark);
-        return 0;
-    }
-    if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0)) {
-        if (isdigit((unsigned char)top->key[0]))
-            BRC_FAIL(r->ctx, BRC_ERR_INPUT,
-                     "%s:%d: '%s' follows a comma: in braces and brackets a comma ends a value, so "
-                     "write numbers with a decimal point",
-                     r->c->path, top->line, top->key);
-        if (r->depth > 1 || brc_params_find(brc_casefile_param_list, top->key))
-            BRC_FAIL(r->ctx, BRC_ERR_INPUT,
-                     "%s:%d: %s: has no value; write one or leave the key out", r->c->path,
-                     top->line, top->key);
-        BRC_TRY(add_section(r->ctx, r->c, top->key, top->line));
-        struct brc_casefile_place *s = &r->c->sections[r->c->n_sections - 1];
-        s->form = BRC_CASEFILE_NULL;
-        s->begin = r->begin;
-        s->end = r->end;
-        top->key[0] = '\0';
-        top->has_values = true;
-        return 0;
-    }
+    if (top->key[0] == '\0')
+        return read_key(r, event, line);
+    if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0))
+        return read_null(r);
     return add_value(r, text, top->line);
 }
 
@@ -317,10 +321,8 @@ static int close_mapping(struct reader *r, const yaml_event_t *event)
             place->form = BRC_CASEFILE_EMPTY;
         end_value(r, &event->end_mark);
     }
-    if (r->depth > 0) {
-        r->level[r->depth - 1].key[0] = '\0';
-        r->level[r->depth - 1].has_values = true;
-    }
+    if (r->depth > 0)
+        end_key(&r->level[r->depth - 1]);
     return 0;
 }
 
@@ -331,7 +333,8 @@ static int open_sequence(struct reader *r, const yaml_event_t *event, int line)
         return fail_at(r, line, "a case file is a mapping, `key: value`; this is a sequence");
     if (r->is_sequence || r->level[r->depth - 1].key[0] == '\0')
         return fail_at(r, line, "a sequence must be the value of a key and hold plain values");
-    /* the dashes of a sequence may stand in the column of its key, another value may not */
+    /* where a value takes its place: the dashes of a sequence may stand in the column of its key,
+     * another value may not */
     int key = r->level[r->depth - 1].column;
     bool is_flow = event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE;
     r->begin = byte_at(r, &event->start_mark);
@@ -353,25 +356,18 @@ static int close_sequence(struct reader *r, const yaml_event_t *event)
     return code;
 }
 
-/* Anchors, aliases and tags are YAML's way to programs; a case file is data. */
+/* Anchors, aliases and tags are YAML's way to programs; a case file is data. Scalars, sequences and
+ * mappings begin with anchor and tag, aliases with the anchor, so that any of the union's members
+ * shows them (C17, 6.5.2.3). */
 static int refuse_extras(struct reader *r, const yaml_event_t *event, int line)
 {
-    const yaml_char_t *anchor = NULL, *tag = NULL;
-    if (event->type == YAML_SCALAR_EVENT) {
-        anchor = event->data.scalar.anchor;
-        tag = event->data.scalar.tag;
-    } else if (event->type == YAML_MAPPING_START_EVENT) {
-        anchor = event->data.mapping_start.anchor;
-        tag = event->data.mapping_start.tag;
-    } else if (event->type == YAML_SEQUENCE_START_EVENT) {
-        anchor = event->data.sequence_start.anchor;
-        tag = event->data.sequence_start.tag;
-    }
-    if (anchor || event->type == YAML_ALIAS_EVENT)
+    bool has_tag = event->type == YAML_SCALAR_EVENT || event->type == YAML_SEQUENCE_START_EVENT ||
+                   event->type == YAML_MAPPING_START_EVENT;
+    if (event->type == YAML_ALIAS_EVENT || (has_tag && event->data.scalar.anchor))
         return fail_at(r, line,
                        "anchors and aliases (&name, *name) are not accepted; write the "
                        "value out at each place");
-    if (tag)
+    if (has_tag && event->data.scalar.tag)
         return fail_at(r, line, "tags (!name) are not accepted; write the plain value");
     return 0;
 }
@@ -402,7 +398,8 @@ static int read_event(struct reader *r, const yaml_event_t *event)
     }
 }
 
-/* What YAML says of a line; a tab in it is the reason more often than not. */
+/* What YAML says of a line. Of a tab it says "found character that cannot start any token", which
+ * helps nobody who does not see tabs. */
 static int fail_yaml(struct reader *r, const yaml_parser_t *parser)
 {
     const char *line = r->c->text;
@@ -452,12 +449,10 @@ int brc_casefile_parse(struct brc_context *ctx, const char *path, const char *te
 {
     memset(c, 0, sizeof *c);
     BRC_TRY(check_bytes(ctx, path, text, size));
-    c->path = brc_alloc(ctx, strlen(path) + 1, 1);
-    c->text = brc_alloc(ctx, size + 1, 1);
+    c->path = copy_text(ctx, path, strlen(path));
+    c->text = copy_text(ctx, text, size);
     if (!c->path || !c->text)
         return BRC_ERR_MEMORY;
-    strcpy(c->path, path);
-    memcpy(c->text, text, size);
     BRC_TRY(parse_yaml(ctx, c, size));
     return brc_casefile_top_level(ctx, c);
 }
@@ -475,48 +470,28 @@ int brc_casefile_read(struct brc_context *ctx, const char *path, struct brc_case
     return code;
 }
 
-static int check_override(struct brc_context *ctx, const char *assignment, const char *equals)
-{
-    const char *where = "--set";
-    size_t size = strlen(assignment);
-    if (!equals || size > BRC_CASEFILE_MAX_BYTES)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: '%.60s' is not of the form section.key=value", where,
-                 assignment);
-    for (size_t i = 0, n; i < size; i += n) {
-        n = utf8_length((const unsigned char *)assignment + i, size - i);
-        if (n == 0 || (unsigned char)assignment[i] < 0x20)
-            BRC_FAIL(ctx, BRC_ERR_USAGE, "%s: the value is not one line of UTF-8 text", where);
-    }
-    return 0;
-}
-
 int brc_casefile_override(struct brc_context *ctx, struct brc_casefile *c, const char *assignment)
 {
-    char part[3][BRC_CASEFILE_KEY_SIZE] = {"", "", ""};
+    static const char no_form[] = "--set: '%.60s' is not of the form section.key=value";
+    char part[BRC_CASEFILE_MAX_LEVELS][BRC_CASEFILE_KEY_SIZE];
+    size_t size = strlen(assignment);
     const char *equals = strchr(assignment, '='), *at = assignment;
-    int n_parts = 0;
-    BRC_TRY(check_override(ctx, assignment, equals));
-    for (;; n_parts++, at++) {
-        size_t n = strcspn(at, ".=");
-        if (n_parts == 3)
-            BRC_FAIL(ctx, BRC_ERR_USAGE, "--set: '%.60s' is not of the form section.key=value",
-                     assignment);
-        BRC_TRY(check_name(ctx, at, n, "--set"));
-        snprintf(part[n_parts], BRC_CASEFILE_KEY_SIZE, "%.*s", (int)n, at);
-        at += n;
-        if (at == equals)
-            break;
+    int n = 0;
+    if (!equals || size > BRC_CASEFILE_MAX_BYTES)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, no_form, assignment);
+    if (good_bytes(assignment, size) < size || strpbrk(assignment, "\t\r\n"))
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "--set: the value is not one line of UTF-8 text");
+    for (; at <= equals; at += strlen(part[n++]) + 1) {
+        if (n == BRC_CASEFILE_MAX_LEVELS)
+            BRC_FAIL(ctx, BRC_ERR_USAGE, no_form, assignment);
+        BRC_TRY(check_name(ctx, at, strcspn(at, ".="), "--set"));
+        snprintf(part[n], BRC_CASEFILE_KEY_SIZE, "%.*s", (int)strcspn(at, ".="), at);
     }
-    const char *name[3] = {n_parts ? part[0] : "", n_parts == 2 ? part[1] : "", part[n_parts]};
+    const char *name[3] = {n > 1 ? part[0] : "", n > 2 ? part[1] : "", part[n - 1]};
     if (*name[0] && !brc_casefile_find_section(c, name[0]))
         BRC_TRY(add_section(ctx, c, name[0], 0));
-    BRC_TRY(add_entry(ctx, c, name, equals + 1 + strspn(equals + 1, " "), 0));
+    BRC_TRY(add_entry(ctx, c, name, at + strspn(at, " "), 0));
     return brc_casefile_top_level(ctx, c);
-}
-
-const char *brc_casefile_text(const struct brc_casefile *c)
-{
-    return c->text;
 }
 
 void brc_casefile_free(struct brc_casefile *c)

@@ -72,7 +72,7 @@ struct brc_casefile_place {
 /* A case file as read. Freed by brc_casefile_free, also after a failed read. */
 struct brc_casefile {
     char *path;
-    char *text; /* raw, see brc_casefile_text */
+    char *text; /* the file's bytes; overrides are no part of them */
     struct brc_casefile_place root;
     struct brc_casefile_entry *entries;
     size_t n, cap;
@@ -109,8 +109,6 @@ const char *brc_casefile_where(const struct brc_casefile *c, int line, bool is_o
 /* Judges the section names, after all sections were read. */
 int brc_casefile_finish(struct brc_context *ctx, const struct brc_casefile *c,
                         const char *const *sections, size_t n);
-/* The file's bytes; overrides are no part of them. */
-const char *brc_casefile_text(const struct brc_casefile *c);
 /* Gives a key, as the section's list calls it, this value in the text of a case without overrides:
  * in its place where the file gives the key, else as the last of its section. All other bytes stay.
  * The case is then the one that the new text makes. */

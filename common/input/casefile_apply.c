@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Applies the entries of a case to parameter lists, and judges sections. */
+/* Applies the entries of a case to parameter lists, and checks sections. An entry is read here
+ * alone, when its section is: before that nothing knows what its key means. */
 #include "common/input/casefile.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Line of another entry of the file that means the same key, 0 when there is none. */
+/* Line of another entry of the file that means the same key, 0 when there is none. By meaning, not
+ * by spelling: `interaction: gap` and `interaction: {rule: gap}` are the same key, and so is an
+ * older name. Overrides are left out: there the last one holds. */
 static int find_twin(const struct brc_casefile *c, size_t i, struct brc_param_list list)
 {
     const char *key = brc_casefile_key(&c->entries[i], list);
@@ -25,11 +28,7 @@ static int check_required(struct brc_context *ctx, const struct brc_casefile *c,
     const struct brc_casefile_place *s = brc_casefile_find_section(c, section);
     for (int i = 0; i < list.n; i++) {
         const struct brc_param *p = &list.params[i];
-        bool is_given = p->default_text != NULL;
-        for (size_t j = 0; j < c->n && !is_given; j++)
-            is_given = strcmp(c->entries[j].section, section) == 0 &&
-                       strcmp(brc_casefile_key(&c->entries[j], list), p->key) == 0;
-        if (!is_given)
+        if (!p->default_text && !brc_casefile_find_entry(c, section, p->key, list))
             BRC_FAIL(
                 ctx, BRC_ERR_INPUT, "%s: %s.%s: required key is missing (%s); allowed %s, unit %s",
                 brc_casefile_where(c, s ? s->line : 0, false, where), section, p->key, p->meaning,
@@ -55,8 +54,8 @@ int brc_casefile_section(struct brc_context *ctx, const struct brc_casefile *c, 
         brc_casefile_where(c, e->line, e->is_override, where);
         if (twin)
             BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: %s.%s: given twice, first in line %d; keep one of the two", where,
-                     section, key, twin);
+                     "%s: %s%s%s: given twice, first in line %d; keep one of the two", where,
+                     section, *section ? "." : "", key, twin);
         if (!brc_params_find(list, e->key) && brc_params_renamed(list, e->key))
             brc_log(ctx, "%s: %s.%s is called %s now", where, section, e->key, key);
         BRC_TRY(brc_params_set(ctx, list, values, section, key, e->text, where));
@@ -64,6 +63,7 @@ int brc_casefile_section(struct brc_context *ctx, const struct brc_casefile *c, 
     return check_required(ctx, c, section, list);
 }
 
+/* Sections of all models are allowed, be the model run or not, so that one case serves several. */
 int brc_casefile_finish(struct brc_context *ctx, const struct brc_casefile *c,
                         const char *const *sections, size_t n)
 {

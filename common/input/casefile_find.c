@@ -6,20 +6,21 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LONGEST_PATH = 200 }; /* in messages; of longer ones the end is told */
+/* Bytes of a path in messages; of longer ones the end is told, which has the name of the file. */
+enum { LONGEST_PATH = 200 };
 
 const char *brc_casefile_where(const struct brc_casefile *c, int line, bool is_override,
                                char where[BRC_CASEFILE_WHERE_SIZE])
 {
-    int n = (int)strlen(c->path);
-    bool is_long = n > LONGEST_PATH;
-    const char *path = is_long ? c->path + n - LONGEST_PATH : c->path;
+    size_t n = strlen(c->path);
+    const char *path = n > LONGEST_PATH ? c->path + n - LONGEST_PATH : c->path;
+    const char *dots = path == c->path ? "" : "...";
     if (is_override)
         snprintf(where, BRC_CASEFILE_WHERE_SIZE, "--set");
     else if (line > 0)
-        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "%s%s:%d", is_long ? "..." : "", path, line);
+        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "%s%s:%d", dots, path, line);
     else
-        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "%s%s", is_long ? "..." : "", path);
+        snprintf(where, BRC_CASEFILE_WHERE_SIZE, "%s%s", dots, path);
     return where;
 }
 
@@ -32,6 +33,8 @@ const struct brc_casefile_place *brc_casefile_find_section(const struct brc_case
     return NULL;
 }
 
+/* A key of the list wins over what else it could mean, so that a list can have both a and a_rule.
+ */
 const char *brc_casefile_key(const struct brc_casefile_entry *e, struct brc_param_list list)
 {
     const struct brc_param *renamed = brc_params_renamed(list, e->key);

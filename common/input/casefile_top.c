@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The keys of a case that stand outside of sections. */
+/* The keys of a case that stand outside of sections. The version comes first: a case of another
+ * format has other keys, so that any further message about it would mislead. */
 #include "common/input/casefile.h"
 
 #include <stdio.h>
@@ -31,7 +32,8 @@ static int check_version(struct brc_context *ctx, const struct brc_casefile *c)
     return 0;
 }
 
-/* Keys and sections that stand in each other's place. */
+/* Keys and sections that stand in each other's place: a mapping where a text belongs, or a text
+ * where a mapping does; the message shows the form. */
 static int check_top_level(struct brc_context *ctx, const struct brc_casefile *c)
 {
     char where[BRC_CASEFILE_WHERE_SIZE], hint[BRC_HINT_SIZE];

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Puts values into the text of a case, so that what a run keeps says what has run. The user's
  * words, comments and layout stay: a value takes the place of the one before, a key that the file
- * does not give is added behind the last of its section. */
+ * does not give is added behind the last of its section. Overrides once stood in the kept case as
+ * comments; then it made another run than the one that it was kept with.
+ *
+ * libyaml's emitter is no help: it writes a document anew, without comments, in its own layout. */
 #include "common/input/casefile.h"
 
 #include <ctype.h>
@@ -17,7 +20,8 @@ struct edit {
     const char *part[6];
 };
 
-/* A value that YAML takes as it is, in every place. */
+/* A value that YAML takes as it is, in every place. Narrower than YAML's own rule, which depends on
+ * what is around the value: quotes that were not needed do no harm. */
 static bool is_plain(const char *value)
 {
     const char *first = value + strspn(value, "+-.");
@@ -78,7 +82,8 @@ static char *edited_text(struct brc_context *ctx, const char *old, const struct 
     return text;
 }
 
-/* Makes the case anew from the edited text. */
+/* Makes the case anew from the edited text: the places of all that follows have moved, and an edit
+ * that YAML would read as something else is found here and not when the kept case is run. */
 static int apply(struct brc_context *ctx, struct brc_casefile *c, const struct edit *e)
 {
     struct brc_casefile fresh;
@@ -110,32 +115,25 @@ static int append(struct brc_context *ctx, struct brc_casefile *c,
     return apply(ctx, c, &(struct edit){at, at, line, place->indent, {key, ": ", value}});
 }
 
-/* The section, empty, behind the last one; its keys then stand in braces. */
-static int add_to_section(struct brc_context *ctx, struct brc_casefile *c, const char *section,
-                          const char *key, const char *value)
-{
-    if (!*section)
-        return append(ctx, c, &c->root, key, value);
-    const struct brc_casefile_place *place = brc_casefile_find_section(c, section);
-    if (!place) {
-        BRC_TRY(append(ctx, c, &c->root, section, "{}"));
-        place = brc_casefile_find_section(c, section);
-    }
-    if (!place)
-        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "the section %s was added, but is not found", section);
-    return append(ctx, c, place, key, value);
-}
-
-/* A key that the file gives nowhere; `rule` of a nested mapping stands for the mapping's own key.
- */
+/* A key that the file gives nowhere; `rule` of a nested mapping stands for the mapping's own key. A
+ * section that is missing comes behind the last one, empty at first; its keys then stand in braces,
+ * which need no indentation that would have to agree with the user's. */
 static int add(struct brc_context *ctx, struct brc_casefile *c, const char *section,
                const char *key, const char *value)
 {
     char nested[2 * BRC_CASEFILE_KEY_SIZE];
     snprintf(nested, sizeof nested, "%s.%s", section, key);
     const struct brc_casefile_place *place = brc_casefile_find_section(c, nested);
-    return place ? append(ctx, c, place, "rule", value)
-                 : add_to_section(ctx, c, section, key, value);
+    if (place)
+        return append(ctx, c, place, "rule", value);
+    if (!*section)
+        return append(ctx, c, &c->root, key, value);
+    if (!brc_casefile_find_section(c, section))
+        BRC_TRY(append(ctx, c, &c->root, section, "{}"));
+    place = brc_casefile_find_section(c, section);
+    if (!place)
+        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "the section %s was added, but is not found", section);
+    return append(ctx, c, place, key, value);
 }
 
 /* Is the entry all that its mapping holds? */
@@ -152,7 +150,8 @@ static bool is_alone(const struct brc_casefile *c, const struct brc_casefile_ent
     return true;
 }
 
-/* From its key on to the comma behind it, where there is one. */
+/* From its key on to the comma behind it, where there is one; YAML allows a comma before the
+ * closing brace, so that the one before the key may stay. */
 static struct edit flow_piece(const char *text, const struct brc_casefile_entry *e)
 {
     size_t end = e->end + strspn(text + e->end, " \t\r\n");

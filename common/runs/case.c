@@ -151,7 +151,7 @@ static int repeat_override(struct brc_context *ctx, struct brc_casefile *c,
 int brc_case_change(struct brc_context *ctx, const struct brc_case *run_case,
                     const char *const *overrides, int n, struct brc_case *out)
 {
-    const char *text = brc_casefile_text(&run_case->file);
+    const char *text = run_case->file.text;
     BRC_TRY(start(ctx, out, run_case->file.path));
     BRC_TRY(brc_casefile_parse(ctx, run_case->file.path, text, strlen(text), &out->file));
     for (size_t i = 0; i < run_case->file.n; i++)

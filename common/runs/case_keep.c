@@ -123,7 +123,7 @@ static int drop_meaningless(struct brc_context *ctx, const struct brc_case *run_
 static int write_kept(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_model *model, const char *dir, struct brc_casefile *c)
 {
-    const char *text = brc_casefile_text(&run_case->file);
+    const char *text = run_case->file.text;
     BRC_TRY(brc_casefile_parse(ctx, run_case->file.path, text, strlen(text), c));
     BRC_TRY(keep_overrides(ctx, &run_case->file, c));
     BRC_TRY(drop_meaningless(ctx, run_case, c));
@@ -155,12 +155,12 @@ int brc_case_keep(struct brc_context *ctx, const struct brc_case *run_case,
     struct brc_casefile c;
     int code = write_kept(ctx, run_case, model, dir, &c);
     if (code == 0)
-        code = check_kept(ctx, run_case, model, brc_casefile_text(&c));
+        code = check_kept(ctx, run_case, model, c.text);
     *text = NULL;
-    if (code == 0 && !(*text = brc_alloc(ctx, strlen(brc_casefile_text(&c)) + 1, 1)))
+    if (code == 0 && !(*text = brc_alloc(ctx, strlen(c.text) + 1, 1)))
         code = BRC_ERR_MEMORY;
     if (code == 0)
-        strcpy(*text, brc_casefile_text(&c));
+        strcpy(*text, c.text);
     brc_casefile_free(&c);
     return code;
 }

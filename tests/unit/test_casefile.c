@@ -88,7 +88,7 @@ static void case_is_read(void **state)
     assert_true(m.e_bar == 50e9 && m.interaction == 1 && m.interaction_gap == 1e-3);
     assert_true(m.size[0] == 1 && m.size[1] == 2 && m.size[2] == 3);
     assert_string_equal(m.note, "");
-    assert_string_equal(brc_casefile_text(&c), text);
+    assert_string_equal(c.text, text);
     assert_int_equal(brc_casefile_find_section(&c, "specimen")->line, 6);
     assert_int_equal(brc_casefile_find_section(&c, "vgcm")->line, 7);
     assert_null(brc_casefile_find_section(&c, "test"));
@@ -126,7 +126,7 @@ static void overrides_hold(void **state)
     assert_string_equal(m.note, "a=b.c");
     assert_string_equal(c.head.model, "polyhedra");
     assert_int_equal(c.n_models, 2);
-    assert_string_equal(brc_casefile_text(&c), text);
+    assert_string_equal(c.text, text);
     brc_casefile_free(&c);
 }
 
@@ -139,7 +139,7 @@ static void check_write(const char *text, const char *key, const char *value, co
     const struct brc_param_list list = is_top ? brc_casefile_param_list : model_list;
     CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, strlen(text), &c));
     CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, section, key, list, value));
-    assert_string_equal(brc_casefile_text(&c), expected);
+    assert_string_equal(c.text, expected);
     const struct brc_casefile_entry *e = brc_casefile_find_entry(&c, section, key, list);
     assert_non_null(e);
     assert_string_equal(e->text, value);
@@ -489,7 +489,7 @@ static void check_only_one_changes(const struct brc_casefile *before, const char
                                    const char *value)
 {
     struct brc_casefile c;
-    const char *text = brc_casefile_text(before);
+    const char *text = before->text;
     CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, strlen(text), &c));
     CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, "vgcm", key, model_list, value));
     const struct brc_casefile_entry *now = brc_casefile_find_entry(&c, "vgcm", key, model_list);
@@ -553,7 +553,7 @@ static void older_names_are_read(void **state)
     const char text[] = "breccia: 1\nvgcm: {remark: old}\n";
     CHECK_OK(&ctx, brc_casefile_parse(&ctx, "c.yaml", text, strlen(text), &c));
     CHECK_OK(&ctx, brc_casefile_write(&ctx, &c, "vgcm", "note", model_list, "new"));
-    assert_string_equal(brc_casefile_text(&c), "breccia: 1\nvgcm: {remark: new}\n");
+    assert_string_equal(c.text, "breccia: 1\nvgcm: {remark: new}\n");
     brc_casefile_free(&c);
 }
 
