@@ -28,7 +28,9 @@ int brc_text_file_end(struct brc_context *ctx, struct brc_text_file *t)
         return 0;
     int reason = errno;
     unlink(t->part);
-    BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", t->path, strerror(reason));
+    BRC_FAIL(ctx, BRC_ERR_IO,
+             "cannot write %s: %s; what was there before stays: make room or choose another folder",
+             t->path, strerror(reason));
 }
 
 void brc_text_file_drop(struct brc_text_file *t)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The header holds size and hash of all that follows, as text that a person can read. It is
  * compared as a whole with the one that the content makes, so that damage to the header is found as
- * well. */
+ * well. HDF5's own checksums do not serve: they are of single chunks, where a filter is asked for,
+ * and in the oldest format, the one that is written here (h5.c), there are none of its metadata. */
 #include "common/output/checksum_header.h"
 
 #include "common/base/table.h"
@@ -20,7 +21,7 @@ const struct brc_checksum_kind brc_checksum_state = {
 const struct brc_checksum_kind brc_checksum_frame = {
     "frame", 1, "use an undamaged copy, or start the run anew with --force"};
 
-enum { MARK_SIZE = 64 };
+enum { MARK_SIZE = 64 }; /* more than any kind's name needs */
 
 /* What a header says. */
 struct header {
@@ -87,12 +88,10 @@ static bool read_header(const char text[BRC_CHECKSUM_SIZE], const struct brc_che
     size_t length = make_mark(kind, mark);
     memcpy(line, text, BRC_CHECKSUM_SIZE);
     line[BRC_CHECKSUM_SIZE] = '\0';
+    *s = (struct header){0};
     if (strncmp(line, mark, length) != 0)
         return false;
-    const char *size = strstr(line, "\nbytes "), *hash = strstr(line, "\nhash ");
-    s->format = (int)strtol(line + length, NULL, 10);
-    s->size = size ? strtoull(size + 7, NULL, 10) : 0;
-    s->hash = hash ? strtoull(hash + 6, NULL, 16) : 0;
+    sscanf(line + length, "%d\nbytes %" SCNu64 "\nhash %" SCNx64, &s->format, &s->size, &s->hash);
     return true;
 }
 
@@ -113,7 +112,7 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file, siz
                  "wrote it, or start the run anew with --force",
                  path, kind->name, said.format, BRC_VERSION, kind->format);
     found.size = size;
-    if (size == said.size)
+    if (size == said.size) /* else there is no need to read it */
         BRC_TRY(measure(ctx, path, file, &found));
     if (found.size != said.size)
         BRC_FAIL(ctx, BRC_ERR_IO,

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The only user of HDF5. A file is made in memory and written at once, as the library crashes when
- * a disk is full; files hold no times, so that equal states are equal files. */
+ * a disk is full; files hold no times, so that equal states are equal files. States and frames come
+ * through here; what stands in them is no business of this file.
+ *
+ * The library prints no error of its own. Closing a handle that was never opened is then a failure
+ * without a trace, so that nothing here asks before it closes. */
 #include "common/output/h5.h"
 
-#include "common/base/folders.h"
+#include "common/base/text_file.h"
 
 #include <hdf5.h>
 
@@ -18,39 +22,28 @@
 
 _Static_assert(sizeof(hid_t) == sizeof(int64_t), "h5.h keeps handles of HDF5 as int64_t");
 
-enum { PACK_LEVEL = 4, PACK_ROWS = 1024, CHUNK_BYTES = 1 << 20 };
-/* bytes by which files in memory grow */
-enum { CORE_STEP = 1 << 20 };
+/* zlib's level; the least rows that are packed: fewer gain nothing; bytes of a chunk; bytes by
+ * which files in memory grow */
+enum { PACK_LEVEL = 4, PACK_ROWS = 1024, CHUNK_BYTES = 1 << 20, CORE_STEP = 1 << 20 };
 
+/* Not static: HDF5 knows its types only when it has started. */
 static hid_t memory_type(enum brc_type type)
 {
-    switch (type) {
-    case BRC_F64:
-        return H5T_NATIVE_DOUBLE;
-    case BRC_I64:
-        return H5T_NATIVE_INT64;
-    case BRC_I32:
-        return H5T_NATIVE_INT32;
-    case BRC_U8:
-        return H5T_NATIVE_UINT8;
-    }
-    return H5I_INVALID_HID;
+    const hid_t types[] = {[BRC_F64] = H5T_NATIVE_DOUBLE,
+                           [BRC_I64] = H5T_NATIVE_INT64,
+                           [BRC_I32] = H5T_NATIVE_INT32,
+                           [BRC_U8] = H5T_NATIVE_UINT8};
+    return types[type];
 }
 
 /* Little-endian on disk, whatever the machine. */
 static hid_t file_type(enum brc_type type)
 {
-    switch (type) {
-    case BRC_F64:
-        return H5T_IEEE_F64LE;
-    case BRC_I64:
-        return H5T_STD_I64LE;
-    case BRC_I32:
-        return H5T_STD_I32LE;
-    case BRC_U8:
-        return H5T_STD_U8LE;
-    }
-    return H5I_INVALID_HID;
+    const hid_t types[] = {[BRC_F64] = H5T_IEEE_F64LE,
+                           [BRC_I64] = H5T_STD_I64LE,
+                           [BRC_I32] = H5T_STD_I32LE,
+                           [BRC_U8] = H5T_STD_U8LE};
+    return types[type];
 }
 
 int brc_h5_write_failed(const struct brc_h5_file *f, const char *what)
@@ -77,13 +70,6 @@ static hid_t without_times(hid_t class)
 }
 
 /* ---- files --------------------------------------------------------------------------------- */
-
-static int part_path(struct brc_context *ctx, const char *path, char temporary[BRC_PATH_SIZE])
-{
-    if (snprintf(temporary, BRC_PATH_SIZE, "%s.part", path) >= BRC_PATH_SIZE)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", path);
-    return 0;
-}
 
 /* A new file in memory: HDF5 crashes when it cannot write to a full disk. In the oldest format:
  * from 1.8 on the superblock of an image has a wrong checksum. Integrity is the header's. */
@@ -116,65 +102,37 @@ static int copy_image(const struct brc_h5_file *f, char **image, size_t *n)
     return H5Fget_file_image(f->id, *image, *n) == size ? 0 : brc_h5_write_failed(f, "all data");
 }
 
-static int write_file(const struct brc_h5_file *f, const char *path, const char *image, size_t n)
+/* Header and image in their place, by way of a file beside it; then the folder on disk, too: only
+ * with that does the new name outlast a power cut. What fwrite cannot write stays in the stream as
+ * an error, which the end reports. */
+static int write_file(const struct brc_h5_file *f, const char *image, size_t n)
 {
-    char header[BRC_CHECKSUM_SIZE];
-    FILE *file = fopen(path, "wb");
+    char header[BRC_CHECKSUM_SIZE], folder[BRC_PATH_SIZE];
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(f->ctx, &file, NULL, f->path));
     brc_checksum_make(header, f->header, image, n);
-    bool is_good = file && fwrite(header, sizeof header, 1, file) == 1;
-    is_good = is_good && fwrite(image, n, 1, file) == 1 && fflush(file) == 0;
+    fwrite(header, sizeof header, 1, file.out);
+    fwrite(image, n, 1, file.out);
+    BRC_TRY(brc_text_file_end(f->ctx, &file));
+    snprintf(folder, sizeof folder, "%s", f->path);
+    int fd = open(dirname(folder), O_RDONLY | O_DIRECTORY);
+    bool is_on_disk = fd >= 0 && fsync(fd) == 0;
     int reason = errno;
-    if (file && fclose(file) != 0 && is_good) {
-        is_good = false;
-        reason = errno;
-    }
-    if (!is_good)
-        BRC_FAIL(f->ctx, BRC_ERR_IO,
-                 "cannot write %s: %s; what was saved before stays: make room or choose another "
-                 "folder, then go on with --resume",
-                 path, strerror(reason));
+    close(fd);
+    if (!is_on_disk)
+        BRC_FAIL(f->ctx, BRC_ERR_IO, "cannot force %s to disk: %s", folder, strerror(reason));
     return 0;
-}
-
-static int sync_path(struct brc_context *ctx, const char *path, int flags)
-{
-    int fd = open(path, flags);
-    int status = fd < 0 ? -1 : fsync(fd);
-    int reason = errno;
-    if (fd >= 0)
-        close(fd);
-    if (status != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot force %s to disk: %s", path, strerror(reason));
-    return 0;
-}
-
-/* The complete file takes its place: on disk first, then renamed, then the folder on disk. */
-static int publish(struct brc_context *ctx, const char *temporary, const char *path)
-{
-    char folder[BRC_PATH_SIZE];
-    BRC_TRY(sync_path(ctx, temporary, O_RDONLY));
-    if (rename(temporary, path) != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot rename %s to %s: %s", temporary, path, strerror(errno));
-    snprintf(folder, sizeof folder, "%s", path);
-    return sync_path(ctx, dirname(folder), O_RDONLY | O_DIRECTORY);
 }
 
 int brc_h5_finish(struct brc_h5_file *f, int code)
 {
-    char temporary[BRC_PATH_SIZE], *image = NULL;
+    char *image = NULL;
     size_t n = 0;
     if (code == 0)
         code = copy_image(f, &image, &n);
     H5Fclose(f->id);
     if (code == 0)
-        code = part_path(f->ctx, f->path, temporary);
-    if (code == 0) {
-        code = write_file(f, temporary, image, n);
-        if (code == 0)
-            code = publish(f->ctx, temporary, f->path);
-        if (code != 0)
-            unlink(temporary);
-    }
+        code = write_file(f, image, n);
     free(image);
     return code;
 }
@@ -219,18 +177,25 @@ static hid_t text_type(const char *text)
     return type;
 }
 
-int brc_h5_put_text(const struct brc_h5_file *f, const char *path, const char *text)
+/* A dataset with these data; takes the properties and the space. */
+static int put_dataset(const struct brc_h5_file *f, const char *path, hid_t file_form,
+                       hid_t memory_form, hid_t space, hid_t how, const void *data)
 {
-    hid_t type = text_type(text), space = H5Screate(H5S_SCALAR);
-    hid_t how = without_times(H5P_DATASET_CREATE);
-    hid_t id = H5Dcreate2(f->id, path, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
-    herr_t status = id < 0 ? -1 : H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
-    if (id >= 0)
-        H5Dclose(id);
+    hid_t id = H5Dcreate2(f->id, path, file_form, space, H5P_DEFAULT, how, H5P_DEFAULT);
+    herr_t status = H5Dwrite(id, memory_form, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+    H5Dclose(id);
     H5Pclose(how);
     H5Sclose(space);
-    H5Tclose(type);
     return status < 0 ? brc_h5_write_failed(f, path) : 0;
+}
+
+int brc_h5_put_text(const struct brc_h5_file *f, const char *path, const char *text)
+{
+    hid_t type = text_type(text);
+    int code = put_dataset(f, path, type, type, H5Screate(H5S_SCALAR),
+                           without_times(H5P_DATASET_CREATE), text);
+    H5Tclose(type);
+    return code;
 }
 
 /* An attribute of the object at path. */
@@ -239,9 +204,8 @@ static int put_attribute(const struct brc_h5_file *f, const char *path, const ch
 {
     hid_t id = H5Acreate_by_name(f->id, path, name, file_form, space, H5P_DEFAULT, H5P_DEFAULT,
                                  H5P_DEFAULT);
-    herr_t status = id < 0 ? -1 : H5Awrite(id, memory_form, value);
-    if (id >= 0)
-        H5Aclose(id);
+    herr_t status = H5Awrite(id, memory_form, value);
+    H5Aclose(id);
     H5Sclose(space);
     return status < 0 ? brc_h5_write_failed(f, name) : 0;
 }
@@ -270,64 +234,58 @@ int brc_h5_put_pair(const struct brc_h5_file *f, const char *path, const char *n
                          H5Screate_simple(1, &extent, NULL), pair);
 }
 
-/* Reads the text of a dataset, or of an attribute (a label). */
-static int get_text(const struct brc_h5_file *f, const char *path, hid_t id, bool is_label,
-                    char **text)
+/* The text of a dataset, or of an attribute (a label), allocated; NULL where it is none, or too
+ * large for the memory. Only texts of fixed length are read, as they are written: HDF5 allocates
+ * others by itself, by a length that stands in the file. */
+static char *read_string(const struct brc_h5_file *f, hid_t id, bool is_label)
 {
     hid_t type = is_label ? H5Aget_type(id) : H5Dget_type(id);
     hid_t space = is_label ? H5Aget_space(id) : H5Dget_space(id);
     bool is_text = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
                    H5Sget_simple_extent_npoints(space) == 1;
-    herr_t status = -1;
-    *text = is_text ? brc_alloc(f->ctx, H5Tget_size(type) + 1, 1) : NULL;
-    if (*text)
-        status = is_label ? H5Aread(id, type, *text)
-                          : H5Dread(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *text);
+    char *text = is_text ? brc_alloc(f->ctx, H5Tget_size(type) + 1, 1) : NULL;
+    herr_t status = !text      ? -1
+                    : is_label ? H5Aread(id, type, text)
+                               : H5Dread(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
     H5Sclose(space);
     H5Tclose(type);
     if (status >= 0)
-        return 0;
-    free(*text);
-    *text = NULL;
-    return f->ctx->code ? f->ctx->code : brc_h5_read_failed(f, path);
+        return text;
+    free(text);
+    return NULL;
 }
 
 int brc_h5_get_text(const struct brc_h5_file *f, const char *path, char **text)
 {
-    *text = NULL;
     hid_t id = H5Dopen2(f->id, path, H5P_DEFAULT);
-    if (id < 0)
-        return brc_h5_read_failed(f, path);
-    int code = get_text(f, path, id, false, text);
+    *text = read_string(f, id, false);
     H5Dclose(id);
-    return code;
+    return *text ? 0 : brc_h5_read_failed(f, path);
 }
 
 int brc_h5_get_label(const struct brc_h5_file *f, const char *path, const char *name, char **text)
 {
-    *text = NULL;
     hid_t id = H5Aopen_by_name(f->id, path, name, H5P_DEFAULT, H5P_DEFAULT);
-    if (id < 0)
-        return brc_h5_read_failed(f, path);
-    int code = get_text(f, path, id, true, text);
+    *text = read_string(f, id, true);
     H5Aclose(id);
-    return code;
+    return *text ? 0 : brc_h5_read_failed(f, path);
 }
 
 int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *name, size_t *n)
 {
     uint64_t value = 0;
     hid_t id = H5Aopen_by_name(f->id, path, name, H5P_DEFAULT, H5P_DEFAULT);
-    herr_t status = id < 0 ? -1 : H5Aread(id, H5T_NATIVE_UINT64, &value);
-    if (id >= 0)
-        H5Aclose(id);
+    herr_t status = H5Aread(id, H5T_NATIVE_UINT64, &value);
+    H5Aclose(id);
     *n = (size_t)value;
     return status < 0 ? brc_h5_read_failed(f, path) : 0;
 }
 
 /* ---- arrays -------------------------------------------------------------------------------- */
 
-/* Chunks of about CHUNK_BYTES, shuffled and packed; a small array stays as it is. */
+/* Chunks of about CHUNK_BYTES, shuffled and packed; a small array stays as it is. Shuffling puts
+ * like bytes of the numbers side by side: the exponents of a field are much alike, the last digits
+ * not. */
 static void pack(hid_t how, const struct brc_h5_array *a)
 {
     size_t row_size = brc_type_size(a->type) * (size_t)a->width;
@@ -362,24 +320,18 @@ int brc_h5_put_array(const struct brc_h5_file *f, const struct brc_h5_array *a, 
     hid_t how = without_times(H5P_DATASET_CREATE);
     if (is_packed)
         pack(how, a);
-    hid_t id = H5Dcreate2(f->id, a->name, file_type(a->type), space, H5P_DEFAULT, how, H5P_DEFAULT);
-    herr_t status =
-        id < 0 ? -1 : H5Dwrite(id, memory_type(a->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-    if (id >= 0)
-        H5Dclose(id);
-    H5Pclose(how);
-    H5Sclose(space);
-    return status < 0 ? brc_h5_write_failed(f, a->name) : put_labels(f, a);
+    BRC_TRY(put_dataset(f, a->name, file_type(a->type), memory_type(a->type), space, how, data));
+    return put_labels(f, a);
 }
 
-/* Opens the dataset, which must have the shape and the type of a. The caller closes *id. */
+/* Opens the dataset, which must have the shape and the type of a. The caller closes *id. Rank,
+ * extent and type are asked for one by one, as a faulty writer could have made any of them, and
+ * HDF5 would convert what it can in silence. */
 static int open_array(const struct brc_h5_file *f, const struct brc_h5_array *a, hid_t *id)
 {
     int rank = a->is_flat ? 1 : 2;
     hsize_t extent[2] = {0, (hsize_t)a->width};
     *id = H5Dopen2(f->id, a->name, H5P_DEFAULT);
-    if (*id < 0)
-        return brc_h5_read_failed(f, a->name);
     hid_t space = H5Dget_space(*id), type = H5Dget_type(*id);
     bool fits = H5Sget_simple_extent_ndims(space) == rank &&
                 H5Sget_simple_extent_dims(space, extent, NULL) == rank && extent[0] == a->rows &&
@@ -429,23 +381,18 @@ static const char *type_name(hid_t type)
     return "other";
 }
 
-/* A short text attribute of an open dataset; "" when there is none. */
-static void label_of(hid_t id, const char *name, char *text, size_t size)
+/* A text attribute of an open dataset, cut to the size; "" when there is none. */
+static void label_of(const struct brc_h5_file *f, hid_t id, const char *name, char *label,
+                     size_t size)
 {
-    text[0] = '\0';
-    if (H5Aexists(id, name) <= 0)
-        return;
-    hid_t label = H5Aopen(id, name, H5P_DEFAULT), type = H5Aget_type(label);
-    bool fits = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
-                H5Tget_size(type) < size;
-    memset(text, 0, size);
-    if (!fits || H5Aread(label, type, text) < 0)
-        text[0] = '\0';
-    H5Tclose(type);
-    H5Aclose(label);
+    hid_t attribute = H5Aopen(id, name, H5P_DEFAULT);
+    char *text = read_string(f, attribute, true);
+    snprintf(label, size, "%s", text ? text : "");
+    free(text);
+    H5Aclose(attribute);
 }
 
-static void describe(hid_t id, struct brc_h5_item *item)
+static void describe(const struct brc_h5_file *f, hid_t id, struct brc_h5_item *item)
 {
     hsize_t extent[2] = {1, 1};
     hid_t space = H5Dget_space(id), type = H5Dget_type(id);
@@ -460,12 +407,13 @@ static void describe(hid_t id, struct brc_h5_item *item)
     if (!item->is_text && H5Sget_simple_extent_npoints(space) == 1 &&
         H5Dread(id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &item->value) < 0)
         item->value = NAN;
-    label_of(id, "unit", item->unit, sizeof item->unit);
-    label_of(id, "meaning", item->meaning, sizeof item->meaning);
+    label_of(f, id, "unit", item->unit, sizeof item->unit);
+    label_of(f, id, "meaning", item->meaning, sizeof item->meaning);
     H5Tclose(type);
     H5Sclose(space);
 }
 
+/* Links that lead out of the file, or into it a second time, are passed over: a state has none. */
 static herr_t visit_link(hid_t where, const char *path, const H5L_info_t *info, void *user)
 {
     const struct visit *v = user;
@@ -473,11 +421,10 @@ static herr_t visit_link(hid_t where, const char *path, const H5L_info_t *info, 
     if (info->type != H5L_TYPE_HARD)
         return 0;
     hid_t object = H5Oopen(where, path, H5P_DEFAULT);
-    bool is_dataset = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+    bool is_dataset = H5Iget_type(object) == H5I_DATASET;
     if (is_dataset)
-        describe(object, &item);
-    if (object >= 0)
-        H5Oclose(object);
+        describe(v->f, object, &item);
+    H5Oclose(object);
     return is_dataset ? v->act(v->user, &item) : 0;
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads what any state or frame holds from the file alone: no case, no model and no specimen is
- * needed, so that a file from another version can be looked at. */
+ * needed, so that a file from another version can be looked at. Called by main.c. The file is gone
+ * through once a group: HDF5 visits by name, where a group's fields and the groups in it alternate.
+ */
 #include "common/output/info.h"
 
 #include "common/base/input_file.h"
@@ -16,26 +18,25 @@ enum { NAME_SIZE = 256, MAX_GROUPS = 64 };
 struct info {
     const struct brc_h5_file *f;
     FILE *out;
+    double step; /* NAN: the file has none */
     int n_groups, now;
     bool is_first; /* nothing of group `now` has been printed */
     char group[MAX_GROUPS][NAME_SIZE];
 };
 
 /* One line a text of the provenance; texts of several lines come at the end. */
-static int print_text(const struct info *i, const struct brc_h5_item *item)
+static int print_text(void *user, const struct brc_h5_item *item)
 {
-    char *text;
+    const struct info *i = user;
     const char *name = strrchr(item->path, '/');
+    char *text;
+    if (!item->is_text)
+        return 0;
     BRC_TRY(brc_h5_get_text(i->f, item->path, &text));
     if (!strchr(text, '\n'))
         fprintf(i->out, "  %-14s %s\n", name ? name + 1 : item->path, text);
     free(text);
     return 0;
-}
-
-static int print_texts(void *user, const struct brc_h5_item *item)
-{
-    return item->is_text ? print_text(user, item) : 0;
 }
 
 static size_t group_length(const struct brc_h5_item *item)
@@ -50,10 +51,13 @@ static bool is_of(const struct brc_h5_item *item, const char *group)
     return strlen(group) == length && strncmp(group, item->path, length) == 0;
 }
 
-/* Lists the groups in the order in which they come up: groups in groups come in between. */
-static int list_group(void *user, const struct brc_h5_item *item)
+/* Finds the step, and lists the groups as they come up: groups in groups come in between. */
+static int survey(void *user, const struct brc_h5_item *item)
 {
     struct info *i = user;
+    const char *slash = strrchr(item->path, '/');
+    if (slash && strcmp(slash, "/step") == 0 && !isnan(item->value))
+        i->step = item->value;
     for (int k = 0; k < i->n_groups; k++)
         if (is_of(item, i->group[k]))
             return 0;
@@ -101,27 +105,16 @@ static int print_case(const struct info *i)
     return 0;
 }
 
-static int find_step(void *user, const struct brc_h5_item *item)
-{
-    double *step = user;
-    const char *slash = strrchr(item->path, '/');
-    if (slash && strcmp(slash, "/step") == 0 && !isnan(item->value))
-        *step = item->value;
-    return 0;
-}
-
 static int print_all(const struct brc_h5_file *f, FILE *out)
 {
-    struct info i = {.f = f, .out = out};
+    struct info i = {.f = f, .out = out, .step = NAN};
     char *program;
-    double step = NAN;
     BRC_TRY(brc_h5_get_text(f, "provenance/program", &program));
     free(program);
-    BRC_TRY(brc_h5_visit(f, find_step, &step));
+    BRC_TRY(brc_h5_visit(f, survey, &i));
     fprintf(out, "%s: %s of breccia, step %.0f\n\n", f->path,
-            f->header == &brc_checksum_frame ? "frame (VTKHDF)" : "saved state", step);
-    BRC_TRY(brc_h5_visit(f, print_texts, &i));
-    BRC_TRY(brc_h5_visit(f, list_group, &i));
+            f->header == &brc_checksum_frame ? "frame (VTKHDF)" : "saved state", i.step);
+    BRC_TRY(brc_h5_visit(f, print_text, &i));
     for (; i.now < i.n_groups; i.now++) {
         i.is_first = true;
         BRC_TRY(brc_h5_visit(f, print_field, &i));

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which parts of a simulation stand in a state file, and in what order they are checked on the way
- * back: sizes before memory is taken, the specimen's hash before fields, the state's hash last. */
+/* Which parts of a simulation stand in a state file, and what is checked first on the way back:
+ * sizes before memory is taken, the specimen's hash before fields, the state's hash last. A file
+ * that passed its checksum may still be one of another version, another case, or a faulty writer.
+ */
 #include "common/output/io_h5.h"
 
 #include <inttypes.h>
@@ -11,19 +13,6 @@
 enum { NAME_SIZE = 256 };
 
 /* ---- fields -------------------------------------------------------------------------------- */
-
-/* Copies the rows of a field between the simulation and a dense buffer. */
-static void copy_rows(const struct brc_state_part *part, int field, char *buffer, bool to_buffer)
-{
-    size_t size = brc_field_size(&part->set.fields[field]);
-    for (size_t row = 0; row < part->n; row++) {
-        char *value = brc_state_value(part, field, row);
-        if (to_buffer)
-            memcpy(buffer + row * size, value, size);
-        else
-            memcpy(value, buffer + row * size, size);
-    }
-}
 
 static bool is_saved(const struct brc_state_part *part, int i)
 {
@@ -44,15 +33,22 @@ static struct brc_h5_array array_of(const struct brc_state_part *part, int i, ch
                                  .row = part->path};
 }
 
-static int write_field(const struct brc_h5_file *f, const struct brc_state_part *part, int i)
+/* A field between the file and the simulation, by way of a dense buffer: the simulation's rows may
+ * lie apart (brc_state_value), and HDF5 would need a description of that for each part. */
+static int move_field(const struct brc_h5_file *f, const struct brc_state_part *part, int i,
+                      bool is_read)
 {
     char name[NAME_SIZE];
     struct brc_h5_array a = array_of(part, i, name);
-    char *buffer = brc_alloc(f->ctx, part->n, brc_field_size(&part->set.fields[i]));
-    if (!buffer)
-        return BRC_ERR_MEMORY;
-    copy_rows(part, i, buffer, true);
-    int code = brc_h5_put_array(f, &a, buffer, false);
+    size_t size = brc_field_size(&part->set.fields[i]);
+    char *buffer = brc_alloc(f->ctx, part->n, size);
+    int code = !buffer ? BRC_ERR_MEMORY : is_read ? brc_h5_get_array(f, &a, buffer) : 0;
+    for (size_t row = 0; code == 0 && row < part->n; row++) {
+        char *value = brc_state_value(part, i, row), *dense = buffer + row * size;
+        memcpy(is_read ? value : dense, is_read ? dense : value, size);
+    }
+    if (code == 0 && !is_read)
+        code = brc_h5_put_array(f, &a, buffer, false);
     free(buffer);
     return code;
 }
@@ -65,22 +61,8 @@ static int write_part(const struct brc_h5_file *f, const struct brc_state_part *
     BRC_TRY(brc_h5_put_count(f, part->path, "rows", part->n));
     for (int i = 0; i < part->set.n; i++)
         if (is_saved(part, i))
-            BRC_TRY(write_field(f, part, i));
+            BRC_TRY(move_field(f, part, i, false));
     return 0;
-}
-
-static int read_field(const struct brc_h5_file *f, const struct brc_state_part *part, int i)
-{
-    char name[NAME_SIZE];
-    struct brc_h5_array a = array_of(part, i, name);
-    char *buffer = brc_alloc(f->ctx, part->n, brc_field_size(&part->set.fields[i]));
-    if (!buffer)
-        return BRC_ERR_MEMORY;
-    int code = brc_h5_get_array(f, &a, buffer);
-    if (code == 0)
-        copy_rows(part, i, buffer, false);
-    free(buffer);
-    return code;
 }
 
 static int read_part(const struct brc_h5_file *f, struct brc_state_part *part)
@@ -102,11 +84,12 @@ static int read_part(const struct brc_h5_file *f, struct brc_state_part *part)
         BRC_TRY(brc_table_resize(f->ctx, part->table, rows));
     for (int i = 0; i < part->set.n; i++)
         if (is_saved(part, i))
-            BRC_TRY(read_field(f, part, i));
+            BRC_TRY(move_field(f, part, i, true));
     return 0;
 }
 
-/* Contacts must be sorted and name bodies that exist: all that follows relies on it. */
+/* Contacts must be sorted and name bodies that exist: all that follows relies on it, and would read
+ * outside of arrays where it does not hold. */
 static int restore_contacts(const struct brc_h5_file *f, struct brc_contacts *c)
 {
     size_t points = 0;
@@ -122,9 +105,9 @@ static int restore_contacts(const struct brc_h5_file *f, struct brc_contacts *c)
 
 /* ---- whole files --------------------------------------------------------------------------- */
 
-static void hash_text(const struct brc_sim *sim, char text[17])
+static void hash_text(uint64_t hash, char text[17])
 {
-    snprintf(text, 17, "%016" PRIx64, brc_sim_hash(sim));
+    snprintf(text, 17, "%016" PRIx64, hash);
 }
 
 static int write_texts(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n)
@@ -135,11 +118,6 @@ static int write_texts(const struct brc_h5_file *f, const struct brc_h5_text *te
         BRC_TRY(brc_h5_put_text(f, name, texts[i].text));
     }
     return 0;
-}
-
-static void specimen_text(const struct brc_sim *sim, char text[17])
-{
-    snprintf(text, 17, "%016" PRIx64, brc_facets_hash(&sim->specimen->facets));
 }
 
 int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n)
@@ -154,8 +132,8 @@ int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text 
 static int write_identity(const struct brc_h5_file *f, const struct brc_sim *sim)
 {
     char hash[17], format[16], specimen[17];
-    hash_text(sim, hash);
-    specimen_text(sim, specimen);
+    hash_text(brc_sim_hash(sim), hash);
+    hash_text(brc_facets_hash(&sim->specimen->facets), specimen);
     snprintf(format, sizeof format, "%d", brc_checksum_state.format);
     const struct brc_h5_text texts[] = {{"format", format},
                                         {"model", sim->model.name},
@@ -178,6 +156,8 @@ static int write_all(const struct brc_h5_file *f, struct brc_sim *sim,
     return 0;
 }
 
+/* Contacts are packed for the file, so that equal states make equal files whatever has come and
+ * gone in the lists; the simulation gets its room for growth back also after a failure. */
 int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
                 const struct brc_h5_extra *extra)
 {
@@ -222,7 +202,7 @@ static int read_all(const struct brc_h5_file *f, struct brc_sim *sim,
 {
     struct brc_state state;
     char hash[17], specimen[17];
-    specimen_text(sim, specimen);
+    hash_text(brc_facets_hash(&sim->specimen->facets), specimen);
     BRC_TRY(expect_text(f, "model", sim->model.name, "choose that model with --model"));
     BRC_TRY(expect_text(f, "specimen_hash", specimen,
                         "the case makes another specimen now: resume with the case, and the files "
@@ -234,7 +214,7 @@ static int read_all(const struct brc_h5_file *f, struct brc_sim *sim,
         BRC_TRY(read_part(f, &extra->parts[i]));
     BRC_TRY(restore_contacts(f, &sim->pairs));
     BRC_TRY(restore_contacts(f, &sim->platens));
-    hash_text(sim, hash);
+    hash_text(brc_sim_hash(sim), hash);
     BRC_TRY(expect_text(f, "state_hash", hash,
                         "the file is damaged or comes from another build; start anew with "
                         "--force"));

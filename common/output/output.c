@@ -17,6 +17,7 @@ const struct brc_param_list brc_output_param_list =
     BRC_PARAMS(output_params, struct brc_output_params);
 
 enum { CELL_SIZE = 512 };
+#define HEADER SIZE_MAX /* the row before row 0 */
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
@@ -163,23 +164,6 @@ void brc_output_cell(FILE *out, const char *text)
     fputc('"', out);
 }
 
-static void csv_header(FILE *out, const struct brc_table *t, const char **comma)
-{
-    char cell[CELL_SIZE];
-    for (int i = 0; i < t->set.n; i++) {
-        const struct brc_field *f = &t->set.fields[i];
-        for (int j = 0; brc_table_saves(t, i) && j < f->width; j++) {
-            if (f->width == 1)
-                snprintf(cell, sizeof cell, "%s [%s]", f->name, f->unit);
-            else
-                snprintf(cell, sizeof cell, "%s_%d [%s]", f->name, j + 1, f->unit);
-            fputs(*comma, out);
-            brc_output_cell(out, cell);
-            *comma = ",";
-        }
-    }
-}
-
 static void csv_value(FILE *out, const struct brc_field *f, const void *column, size_t k)
 {
     switch (f->type) {
@@ -198,31 +182,37 @@ static void csv_value(FILE *out, const struct brc_field *f, const void *column, 
     }
 }
 
-static void csv_row(FILE *out, const struct brc_table *t, size_t row, const char **comma)
+/* One line: the values of a row, or the names of the columns. Names are quoted as any text, since a
+ * unit may hold a comma ("N, N m"). */
+static void csv_line(FILE *out, const struct brc_table *t, size_t row, const char **comma)
 {
+    char cell[CELL_SIZE];
     for (int i = 0; i < t->set.n; i++) {
         const struct brc_field *f = &t->set.fields[i];
-        size_t width = brc_table_saves(t, i) ? (size_t)f->width : 0;
-        for (size_t j = 0; j < width; j++) {
+        int width = brc_table_saves(t, i) ? f->width : 0;
+        for (int j = 0; j < width; j++) {
             fputs(*comma, out);
-            csv_value(out, f, brc_table_column(t, i), row * width + j);
             *comma = ",";
+            if (row != HEADER) {
+                csv_value(out, f, brc_table_column(t, i), row * (size_t)width + (size_t)j);
+                continue;
+            }
+            if (width == 1)
+                snprintf(cell, sizeof cell, "%s [%s]", f->name, f->unit);
+            else
+                snprintf(cell, sizeof cell, "%s_%d [%s]", f->name, j + 1, f->unit);
+            brc_output_cell(out, cell);
         }
     }
 }
 
 void brc_output_table(FILE *out, const struct brc_table *t, const struct brc_table *beside)
 {
-    const char *comma = "";
-    csv_header(out, t, &comma);
-    if (beside)
-        csv_header(out, beside, &comma);
-    fputc('\n', out);
-    for (size_t row = 0; row < t->n; row++) {
-        comma = "";
-        csv_row(out, t, row, &comma);
+    for (size_t row = HEADER; row == HEADER || row < t->n; row++) {
+        const char *comma = "";
+        csv_line(out, t, row, &comma);
         if (beside)
-            csv_row(out, beside, row, &comma);
+            csv_line(out, beside, row, &comma);
         fputc('\n', out);
     }
 }
