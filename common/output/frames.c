@@ -1,14 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which states become frames. Strain and load go unevenly and their ends are not known, so frames
  * are not taken at fixed intervals: a new one displaces the one whose loss leaves the smallest gap.
- * The table is part of the saved state, and files that are not in it are removed. */
+ * Spaced by strain over strain_max, as they once were, four of ten fell into a rock that failed
+ * early, and none at its peak.
+ *
+ * The table is part of the saved state, and files that are not in it are removed: a run that goes
+ * on ends with the frames of one that never stopped. Called by runs/run.c and, for folders of
+ * earlier runs, by runs/run_folder.c. */
 #include "common/output/frames.h"
 
-#include "common/base/folders.h"
+#include "common/base/text_file.h"
 #include "common/output/vtk.h"
 
 #include <dirent.h>
+#include <inttypes.h>
 #include <math.h>
+#include <regex.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +26,9 @@ static const struct brc_field frame_fields[] = {BRC_FRAME_FIELDS(BRC_FIELD, BRC_
 #undef BRC_OWNER
 
 static const char *const kind_name[BRC_N_FRAME_KINDS] = {"grains", "bonds", "contacts"};
+/* Names of their files: "grains_00012.hdf", "grains.hdf.series", and their beginnings, "...part".
+ */
+#define FILE_PATTERN "^(grains|bonds|contacts)(_[0-9]{5,}[.]hdf|[.]hdf[.]series)([.]part)?$"
 
 void brc_frames_init(struct brc_frames *f)
 {
@@ -55,29 +65,23 @@ static bool is_row(const struct brc_sim *sim)
     return c->table.n > 0 && c->step[c->table.n - 1] == sim->step;
 }
 
-static void fill_row(struct brc_frames *f, size_t i, const struct brc_sim *sim, uint8_t role)
-{
-    const struct brc_curve *c = &sim->rig.curve;
-    bool has_means = is_row(sim);
-    f->step[i] = sim->step;
-    f->time[i] = sim->time;
-    f->strain[i] = sim->rig.strain;
-    f->force[i] = has_means ? c->force[c->table.n - 1] : sim->rig.force;
-    f->broken[i] = (int64_t)sim->events.table.n;
-    f->role[i] = role;
-}
-
 /* The row of this very step, made where there is none. */
 static int add_row(struct brc_context *ctx, struct brc_frames *f, const struct brc_sim *sim,
                    uint8_t role)
 {
+    const struct brc_curve *c = &sim->rig.curve;
     size_t n = f->table.n;
     if (n > 0 && f->step[n - 1] == sim->step) {
         f->role[n - 1] |= role;
         return 0;
     }
     BRC_TRY(brc_table_resize(ctx, &f->table, n + 1));
-    fill_row(f, n, sim, role);
+    f->step[n] = sim->step;
+    f->time[n] = sim->time;
+    f->strain[n] = sim->rig.strain;
+    f->force[n] = is_row(sim) ? c->force[c->table.n - 1] : sim->rig.force;
+    f->broken[n] = (int64_t)sim->events.table.n;
+    f->role[n] = role;
     return 0;
 }
 
@@ -87,13 +91,10 @@ static int drop_role(struct brc_context *ctx, struct brc_frames *f, size_t i, ui
     f->role[i] &= (uint8_t)~role;
     if (f->role[i] != 0)
         return 0;
-    for (; i + 1 < f->table.n; i++) {
-        f->step[i] = f->step[i + 1];
-        f->time[i] = f->time[i + 1];
-        f->strain[i] = f->strain[i + 1];
-        f->force[i] = f->force[i + 1];
-        f->broken[i] = f->broken[i + 1];
-        f->role[i] = f->role[i + 1];
+    for (int k = 0; k < f->table.set.n; k++) {
+        size_t size = brc_field_size(&f->table.set.fields[k]);
+        char *row = (char *)brc_table_column(&f->table, k) + i * size;
+        memmove(row, row + size, (f->table.n - 1 - i) * size);
     }
     return brc_table_resize(ctx, &f->table, f->table.n - 1);
 }
@@ -167,12 +168,13 @@ static int choose(struct brc_context *ctx, struct brc_frames *f, const struct br
                   const struct brc_sim *sim, bool *is_taken)
 {
     size_t last = row_before(f, f->table.n, BRC_FRAME_SPACED);
-    *is_taken = last == SIZE_MAX;
-    if (*is_taken || p->frame_steps > 0 || p->frame_strain > 0) {
-        if (!*is_taken && p->frame_steps > 0)
-            *is_taken = sim->step / p->frame_steps > f->step[last] / p->frame_steps;
-        else if (!*is_taken)
-            *is_taken = has_passed(f->strain[last], sim->rig.strain, p->frame_strain);
+    bool is_first = last == SIZE_MAX;
+    *is_taken = is_first;
+    if (is_first || p->frame_steps > 0 || p->frame_strain > 0) {
+        if (!is_first)
+            *is_taken = p->frame_steps > 0
+                            ? sim->step / p->frame_steps > f->step[last] / p->frame_steps
+                            : has_passed(f->strain[last], sim->rig.strain, p->frame_strain);
         return *is_taken ? add_row(ctx, f, sim, BRC_FRAME_SPACED) : 0;
     }
     if (!is_row(sim) || f->step[last] == sim->step)
@@ -213,51 +215,44 @@ static int in_frames(struct brc_context *ctx, const char *dir, const char *name,
     return brc_folder_path(ctx, dir, inner, path);
 }
 
-/* One file of a frame, with its row (but the role, which may change) as values of the whole. */
+/* One file of a frame, with its row (but the role, the last column, which may change) as values of
+ * the whole. */
 static int write_kind(struct brc_context *ctx, const struct brc_frames *f, size_t i,
                       const char *dir, enum brc_frame_kind kind, const struct brc_mesh *m,
                       const struct brc_h5_extra *extra)
 {
     char path[BRC_PATH_SIZE], name[64];
-    struct brc_frames now = *f;
-    now.step += i;
-    now.time += i;
-    now.strain += i;
-    now.force += i;
-    now.broken += i;
-    now.table.columns = &now;
-    now.table.n = 1;
-    now.table.set.n -= 1;
+    struct brc_table whole = f->table;
+    whole.set.n--;
     brc_vtk_name(name, sizeof name, kind_name[kind], f->step[i]);
     BRC_TRY(in_frames(ctx, dir, name, path));
-    return brc_vtk_save(ctx, path, m, &now.table, extra->texts, extra->n_texts);
+    return brc_vtk_save(ctx, path, m, &whole, i, extra->texts, extra->n_texts);
 }
 
-/* The index of each kind, without a peak that is not yet written. */
-static int write_series(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
+/* The index of a kind, as ParaView reads it: names and times, without a peak that is not yet
+ * written.
+ */
+static int write_series(struct brc_context *ctx, const struct brc_frames *f, const char *dir,
+                        const char *kind)
 {
-    size_t n = 0;
-    int64_t *step = brc_alloc(ctx, f->table.n, sizeof *step);
-    double *time = brc_alloc(ctx, f->table.n, sizeof *time);
-    int code = step && time ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < f->table.n; i++)
-        if (!(f->peak && f->role[i] == BRC_FRAME_PEAK)) {
-            step[n] = f->step[i];
-            time[n++] = f->time[i];
-        }
-    for (int k = 0; code == 0 && k < BRC_N_FRAME_KINDS; k++) {
-        char path[BRC_PATH_SIZE], name[64];
-        snprintf(name, sizeof name, "%s.hdf.series", kind_name[k]);
-        code = in_frames(ctx, dir, name, path);
-        if (code == 0)
-            code = brc_vtk_series(ctx, path, kind_name[k], step, time, n);
+    char name[64];
+    const char *comma = "";
+    struct brc_text_file file;
+    snprintf(name, sizeof name, "frames/%s.hdf.series", kind);
+    BRC_TRY(brc_text_file_begin(ctx, &file, dir, name));
+    fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [", file.out);
+    for (size_t i = 0; i < f->table.n; i++) {
+        if (f->peak && f->role[i] == BRC_FRAME_PEAK)
+            continue;
+        brc_vtk_name(name, sizeof name, kind, f->step[i]);
+        fprintf(file.out, "%s\n    {\"name\": \"%s\", \"time\": %.17g}", comma, name, f->time[i]);
+        comma = ",";
     }
-    free(step);
-    free(time);
-    return code;
+    fputs("\n  ]\n}\n", file.out);
+    return brc_text_file_end(ctx, &file);
 }
 
-/* The files of row i, and the index. */
+/* The files of row i, and the index: last, so that it names no file that is not there. */
 static int write_meshes(struct brc_context *ctx, struct brc_frames *f, size_t i, const char *dir,
                         const struct brc_frame_mesh *mesh, const struct brc_h5_extra *extra)
 {
@@ -270,7 +265,9 @@ static int write_meshes(struct brc_context *ctx, struct brc_frames *f, size_t i,
         BRC_TRY(write_kind(ctx, f, i, dir, (enum brc_frame_kind)k, kinds[k], extra));
         f->last[k] = (struct brc_frame_count){kind_name[k], kinds[k]->n_points, kinds[k]->n_cells};
     }
-    return write_series(ctx, f, dir);
+    for (int k = 0; k < BRC_N_FRAME_KINDS; k++)
+        BRC_TRY(write_series(ctx, f, dir, kind_name[k]));
+    return 0;
 }
 
 /* The files of the last row, which is the present state. */
@@ -285,6 +282,8 @@ static int write_now(struct brc_context *ctx, struct brc_frames *f, const char *
     return code;
 }
 
+/* In memory, not on disk: on the way up every row of the curve is a new peak, and nearly all of
+ * their files would be removed again. */
 static int keep_peak(struct brc_context *ctx, struct brc_frames *f, const struct brc_sim *sim)
 {
     if (f->peak)
@@ -330,22 +329,14 @@ int brc_frames_write(struct brc_context *ctx, struct brc_frames *f, const char *
     return write_now(ctx, f, dir, sim, extra);
 }
 
-/* "grains_00012.hdf", "grains.hdf.series", and their beginnings "...part". */
 static bool is_ours(const char *name)
 {
-    for (int k = 0; k < BRC_N_FRAME_KINDS; k++) {
-        size_t n = strlen(kind_name[k]);
-        if (strncmp(name, kind_name[k], n) != 0)
-            continue;
-        const char *rest = name + n;
-        size_t digits = *rest == '_' ? strspn(rest + 1, "0123456789") : 0;
-        const char *ending = digits >= 5 ? ".hdf" : ".hdf.series";
-        rest += digits >= 5 ? digits + 1 : 0;
-        n = strlen(ending);
-        if (strncmp(rest, ending, n) == 0 && (!rest[n] || strcmp(rest + n, ".part") == 0))
-            return true;
-    }
-    return false;
+    regex_t pattern;
+    if (regcomp(&pattern, FILE_PATTERN, REG_EXTENDED | REG_NOSUB) != 0)
+        return false;
+    bool is_match = regexec(&pattern, name, 0, NULL, 0) == 0;
+    regfree(&pattern);
+    return is_match;
 }
 
 bool brc_frames_find(const char *dir, char *name, size_t size)
@@ -376,8 +367,7 @@ static bool is_left_over(const struct brc_frames *f, const char *name)
     return true;
 }
 
-/* Removes the files of frames in DIR/frames that are not in the table; all where f is NULL. */
-static int remove_files(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
+int brc_frames_sweep(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
 {
     char path[BRC_PATH_SIZE];
     int code = 0;
@@ -385,25 +375,10 @@ static int remove_files(struct brc_context *ctx, const struct brc_frames *f, con
     DIR *folder = opendir(path);
     if (!folder)
         return 0;
-    for (struct dirent *entry; code == 0 && (entry = readdir(folder));) {
-        if (f ? !is_left_over(f, entry->d_name) : !is_ours(entry->d_name))
-            continue;
-        code = brc_folder_remove(ctx, path, entry->d_name);
-    }
+    for (struct dirent *entry; code == 0 && (entry = readdir(folder));)
+        if (f ? is_left_over(f, entry->d_name) : is_ours(entry->d_name))
+            code = brc_folder_remove(ctx, path, entry->d_name);
     closedir(folder);
+    rmdir(path); /* stays when it holds anything, ours or not */
     return code;
-}
-
-int brc_frames_sweep(struct brc_context *ctx, const struct brc_frames *f, const char *dir)
-{
-    return remove_files(ctx, f, dir);
-}
-
-int brc_frames_remove(struct brc_context *ctx, const char *dir)
-{
-    char path[BRC_PATH_SIZE];
-    BRC_TRY(remove_files(ctx, NULL, dir));
-    BRC_TRY(in_frames(ctx, dir, "", path));
-    rmdir(path); /* stays when it holds what is not ours */
-    return 0;
 }

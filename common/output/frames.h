@@ -49,11 +49,10 @@ int brc_frames_flush(struct brc_context *ctx, struct brc_frames *f, const char *
  * step is written anew. */
 int brc_frames_write(struct brc_context *ctx, struct brc_frames *f, const char *dir,
                      const struct brc_sim *sim, const struct brc_h5_extra *extra);
-/* Removes the files of frames that are not in the table: after it has been saved or loaded. */
+/* Removes the files of frames that are not in the table, after it has been saved or loaded; with f
+ * NULL all frames of an earlier run. What is not a frame's stays. */
 int brc_frames_sweep(struct brc_context *ctx, const struct brc_frames *f, const char *dir);
 /* Is there a frame, or the series of frames, in dir? Its name from dir on. */
 bool brc_frames_find(const char *dir, char *name, size_t size);
-/* Removes the frames of an earlier run. */
-int brc_frames_remove(struct brc_context *ctx, const char *dir);
 
 #endif

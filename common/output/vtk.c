@@ -3,7 +3,6 @@
  * states, and no second library. */
 #include "common/output/vtk.h"
 
-#include "common/base/text_file.h"
 #include "common/output/h5.h"
 #include "common/output/output.h"
 
@@ -29,8 +28,9 @@ static int put_number(const struct brc_h5_file *f, const char *name, size_t n)
     return put_list(f, name, BRC_I64, 1, &value);
 }
 
-/* Columns of a table as arrays of a group; scalars are flat, as VTK wants them. */
-static int put_table(const struct brc_h5_file *f, const char *group, const struct brc_table *t)
+/* n rows of a table from `first` on, as arrays of a group; scalars are flat, as VTK wants them. */
+static int put_table(const struct brc_h5_file *f, const char *group, const struct brc_table *t,
+                     size_t first, size_t n)
 {
     char name[NAME_SIZE];
     BRC_TRY(brc_h5_put_group(f, group));
@@ -38,14 +38,15 @@ static int put_table(const struct brc_h5_file *f, const char *group, const struc
         const struct brc_field *field = &t->set.fields[i];
         const struct brc_h5_array a = {.name = name,
                                        .type = field->type,
-                                       .rows = t->n,
+                                       .rows = n,
                                        .width = field->width,
                                        .is_flat = field->width == 1,
                                        .unit = field->unit,
                                        .meaning = field->meaning,
                                        .row = t->name};
         snprintf(name, sizeof name, "%s/%s", group, field->name);
-        BRC_TRY(brc_h5_put_array(f, &a, brc_table_column(t, i), true));
+        const char *column = brc_table_column(t, i);
+        BRC_TRY(brc_h5_put_array(f, &a, column + first * brc_field_size(field), true));
     }
     return 0;
 }
@@ -72,7 +73,7 @@ static int put_cells(const struct brc_h5_file *f, const struct brc_mesh *m)
 }
 
 static int put_mesh(const struct brc_h5_file *f, const struct brc_mesh *m,
-                    const struct brc_table *whole)
+                    const struct brc_table *whole, size_t row)
 {
     static const int64_t version[2] = {1, 0};
     const struct brc_h5_array points = {.name = "VTKHDF/Points",
@@ -90,16 +91,17 @@ static int put_mesh(const struct brc_h5_file *f, const struct brc_mesh *m,
     BRC_TRY(put_number(f, "VTKHDF/NumberOfConnectivityIds", m->n_ids));
     BRC_TRY(brc_h5_put_array(f, &points, m->point, true));
     BRC_TRY(put_cells(f, m));
-    BRC_TRY(put_table(f, "VTKHDF/CellData", &m->cells));
-    return put_table(f, "VTKHDF/FieldData", whole);
+    BRC_TRY(put_table(f, "VTKHDF/CellData", &m->cells, 0, m->cells.n));
+    return put_table(f, "VTKHDF/FieldData", whole, row, 1);
 }
 
 int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mesh *m,
-                 const struct brc_table *whole, const struct brc_h5_text *texts, int n_texts)
+                 const struct brc_table *whole, size_t row, const struct brc_h5_text *texts,
+                 int n_texts)
 {
     struct brc_h5_file f;
     BRC_TRY(brc_h5_create(ctx, path, &brc_checksum_frame, &f));
-    int code = put_mesh(&f, m, whole);
+    int code = put_mesh(&f, m, whole, row);
     if (code == 0)
         code = brc_h5_put_provenance(&f, texts, n_texts);
     return brc_h5_finish(&f, code);
@@ -108,21 +110,4 @@ int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mes
 void brc_vtk_name(char *name, size_t size, const char *prefix, int64_t step)
 {
     snprintf(name, size, "%s_%05" PRId64 ".hdf", prefix, step);
-}
-
-int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix,
-                   const int64_t *step, const double *time, size_t n)
-{
-    char name[64];
-    struct brc_text_file file;
-    BRC_TRY(brc_text_file_begin(ctx, &file, NULL, path));
-    FILE *out = file.out;
-    fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
-    for (size_t i = 0; i < n; i++) {
-        brc_vtk_name(name, sizeof name, prefix, step[i]);
-        fprintf(out, "    {\"name\": \"%s\", \"time\": %.17g}%s\n", name, time[i],
-                i + 1 < n ? "," : "");
-    }
-    fputs("  ]\n}\n", out);
-    return brc_text_file_end(ctx, &file);
 }

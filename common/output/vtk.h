@@ -7,14 +7,12 @@
 #include "common/output/io_h5.h"
 #include "common/output/mesh.h"
 
-/* Writes a mesh with the values of its cells; whole: a table of one row with values of the whole;
- * texts go to /provenance, which VTK passes over. The file appears complete or not at all. */
+/* Writes a mesh with the values of its cells, and one row of the table `whole` as values of the
+ * whole; texts go to /provenance, which VTK passes over. The file appears complete or not at all.
+ */
 int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mesh *m,
-                 const struct brc_table *whole, const struct brc_h5_text *texts, int n_texts);
-/* The index of a series: names and times as ParaView's .series files have them. Files are named by
- * step, as brc_vtk_name does. */
-int brc_vtk_series(struct brc_context *ctx, const char *path, const char *prefix,
-                   const int64_t *step, const double *time, size_t n);
+                 const struct brc_table *whole, size_t row, const struct brc_h5_text *texts,
+                 int n_texts);
 /* "grains_00120.hdf" for the prefix grains and step 120. */
 void brc_vtk_name(char *name, size_t size, const char *prefix, int64_t step);
 

@@ -208,7 +208,7 @@ int brc_run_remove_results(struct brc_context *ctx, const char *dir)
 {
     for (int i = 0; i < N_RESULT_FILES; i++)
         BRC_TRY(brc_folder_remove(ctx, dir, result_files[i]));
-    return brc_frames_remove(ctx, dir);
+    return brc_frames_sweep(ctx, NULL, dir);
 }
 
 int brc_run_remove(struct brc_context *ctx, const char *dir)

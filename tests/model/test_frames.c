@@ -139,7 +139,7 @@ static bool is_there(const char *kind, int64_t step)
 static void forget(struct fixture *f, struct brc_frames *frames)
 {
     brc_frames_free(frames);
-    CHECK_OK(&f->ctx, brc_frames_remove(&f->ctx, folder));
+    CHECK_OK(&f->ctx, brc_frames_sweep(&f->ctx, NULL, folder));
 }
 
 /* Frames by steps or strain, and at the end; without a load there is no peak. */
