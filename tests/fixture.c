@@ -105,9 +105,10 @@ void fixture_octahedron(struct fixture *f, struct brc_convex *c, const double ce
 }
 
 /* Copies n items to memory of their own. */
-static void *copy_of(const void *from, size_t n, size_t size)
+static void *copy_of(struct brc_pool *pool, const void *from, size_t n, size_t size)
 {
-    void *to = calloc(n + 1, size);
+    struct brc_context ctx = BRC_CONTEXT_INIT;
+    void *to = brc_pool_alloc(&ctx, pool, n + 1, size);
     assert_non_null(to);
     if (from && n > 0)
         memcpy(to, from, n * size);
@@ -155,27 +156,27 @@ void fixture_loose(struct fixture *f, const struct brc_convex *cell, const doubl
     }
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_specimen_param_list, &s->params));
     fixture_set(f, brc_specimen_param_list, &s->params, "shape: box; grains: grid");
-    brc_convex_init(&s->domain);
+    s->domain = (struct brc_convex){0};
     CHECK_OK(&f->ctx, brc_convex_box(&f->ctx, &s->domain, low, high));
     s->domain_volume = (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
     struct brc_facets *t = &s->facets;
     t->n_cells = n;
-    t->volume = copy_of(NULL, n, sizeof *t->volume);
-    t->centre = copy_of(NULL, n, sizeof *t->centre);
-    t->seed = copy_of(NULL, n, sizeof *t->seed);
-    t->radius = copy_of(radius, n, sizeof *t->radius);
-    t->cell_first = copy_of(NULL, n, sizeof *t->cell_first);
-    t->cell_facet = copy_of(NULL, n_faces, sizeof *t->cell_facet);
-    t->cell = copy_of(NULL, n_faces, sizeof *t->cell);
-    t->face = copy_of(NULL, n_faces, sizeof *t->face);
-    t->is_contact = copy_of(NULL, n_faces, sizeof *t->is_contact);
+    t->volume = copy_of(&t->pool, NULL, n, sizeof *t->volume);
+    t->centre = copy_of(&t->pool, NULL, n, sizeof *t->centre);
+    t->seed = copy_of(&t->pool, NULL, n, sizeof *t->seed);
+    t->radius = copy_of(&t->pool, radius, n, sizeof *t->radius);
+    t->cell_first = copy_of(&t->pool, NULL, n, sizeof *t->cell_first);
+    t->cell_facet = copy_of(&t->pool, NULL, n_faces, sizeof *t->cell_facet);
+    t->cell = copy_of(&t->pool, NULL, n_faces, sizeof *t->cell);
+    t->face = copy_of(&t->pool, NULL, n_faces, sizeof *t->face);
+    t->is_contact = copy_of(&t->pool, NULL, n_faces, sizeof *t->is_contact);
     memset(t->is_contact, 1, n_faces);
-    t->area = copy_of(NULL, n_faces, sizeof *t->area);
-    t->centroid = copy_of(NULL, n_faces, sizeof *t->centroid);
-    t->normal = copy_of(NULL, n_faces, sizeof *t->normal);
-    t->first = copy_of(NULL, n_faces, sizeof *t->first);
-    t->loop = copy_of(NULL, n_loop, sizeof *t->loop);
-    t->vertex = copy_of(NULL, n_vertices, sizeof *t->vertex);
+    t->area = copy_of(&t->pool, NULL, n_faces, sizeof *t->area);
+    t->centroid = copy_of(&t->pool, NULL, n_faces, sizeof *t->centroid);
+    t->normal = copy_of(&t->pool, NULL, n_faces, sizeof *t->normal);
+    t->first = copy_of(&t->pool, NULL, n_faces, sizeof *t->first);
+    t->loop = copy_of(&t->pool, NULL, n_loop, sizeof *t->loop);
+    t->vertex = copy_of(&t->pool, NULL, n_vertices, sizeof *t->vertex);
     f->has_specimen = true;
     for (size_t i = 0; i < n; i++)
         append_cell(t, i, &cell[i]);

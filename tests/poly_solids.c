@@ -17,9 +17,8 @@ static int add_convex(struct brc_context *ctx, struct poly_shapes *shapes,
 
 int solid_box(struct brc_context *ctx, struct poly_shapes *shapes, const double half[3])
 {
-    struct brc_convex c;
+    struct brc_convex c = {0};
     double low[3];
-    brc_convex_init(&c);
     brc_scale(low, half, -1);
     int code = brc_convex_box(ctx, &c, low, half);
     if (code == 0)
@@ -48,7 +47,7 @@ int solid_random(struct brc_context *ctx, struct poly_shapes *shapes, unsigned *
 {
     enum { N = 14 };
     struct brc_plane plane[N];
-    struct brc_convex c;
+    struct brc_convex c = {0};
     const double centre[3] = {0, 0, 0};
     for (int i = 0; i < N; i++) {
         for (int k = 0; k < 3; k++)
@@ -60,7 +59,6 @@ int solid_random(struct brc_context *ctx, struct poly_shapes *shapes, unsigned *
         plane[i].d = size * (0.7 + 0.3 * solid_uniform(seed));
         plane[i].id = i;
     }
-    brc_convex_init(&c);
     int code = brc_convex_from_planes(ctx, &c, plane, N, centre, 3 * size);
     if (code == 0)
         code = add_convex(ctx, shapes, &c);

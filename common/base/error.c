@@ -30,18 +30,6 @@ int brc_error_set(struct brc_context *ctx, int code, const char *file, int line,
     return code;
 }
 
-const char *brc_error_text(int code)
-{
-    switch (code) {
-#define BRC_ERROR_TEXT(name, value, status, text) \
-    case name:                                    \
-        return text;
-        BRC_ERRORS(BRC_ERROR_TEXT)
-    default:
-        return "unknown error";
-    }
-}
-
 int brc_error_exit_status(int code)
 {
     switch (code) {
@@ -62,11 +50,8 @@ void brc_error_clear(struct brc_context *ctx)
     ctx->line = 0;
 }
 
-void *brc_realloc(struct brc_context *ctx, void *old, size_t count, size_t size)
+void *brc_alloc_check(struct brc_context *ctx, void *block, size_t count, size_t size)
 {
-    void *block = NULL;
-    if (size == 0 || count <= PTRDIFF_MAX / size)
-        block = realloc(old, count * size > 0 ? count * size : 1);
     if (!block)
         brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
                       "out of memory: %zu items of %zu bytes; use fewer grains or a larger machine",
@@ -74,14 +59,20 @@ void *brc_realloc(struct brc_context *ctx, void *old, size_t count, size_t size)
     return block;
 }
 
+/* Sizes above PTRDIFF_MAX are refused here, since the product could overflow and realloc would then
+ * succeed with a small block; calloc looks for itself. */
+void *brc_realloc(struct brc_context *ctx, void *old, size_t count, size_t size)
+{
+    void *block = NULL;
+    if (size == 0 || count <= PTRDIFF_MAX / size)
+        block = realloc(old, count * size > 0 ? count * size : 1);
+    return brc_alloc_check(ctx, block, count, size);
+}
+
 void *brc_alloc(struct brc_context *ctx, size_t count, size_t size)
 {
     void *block = calloc(count > 0 ? count : 1, size > 0 ? size : 1);
-    if (!block)
-        brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
-                      "out of memory: %zu items of %zu bytes; use fewer grains or a larger machine",
-                      count, size);
-    return block;
+    return brc_alloc_check(ctx, block, count, size);
 }
 
 void brc_log(const struct brc_context *ctx, const char *format, ...)

@@ -49,8 +49,7 @@ struct brc_context {
 /* Records the first failure (later ones are dropped) and returns code. */
 int brc_error_set(struct brc_context *ctx, int code, const char *file, int line, const char *format,
                   ...) __attribute__((format(printf, 5, 6)));
-/* Short text of a code, and the exit status of the program for it. */
-const char *brc_error_text(int code);
+/* Exit status of the program for a code; 1 for what is not of the list. */
 int brc_error_exit_status(int code);
 /* Forgets a recorded failure, so that the context can be used again. */
 void brc_error_clear(struct brc_context *ctx);
@@ -67,10 +66,13 @@ void brc_error_clear(struct brc_context *ctx);
             return brc_try_code;   \
     } while (0)
 
-/* calloc that records BRC_ERR_MEMORY; returns NULL on failure. count 0 gives a valid pointer. */
+/* calloc that records BRC_ERR_MEMORY; returns NULL on failure. count 0 gives a valid pointer, so
+ * that NULL always means a failure. */
 void *brc_alloc(struct brc_context *ctx, size_t count, size_t size);
 /* realloc likewise; the old block stays valid on failure. */
 void *brc_realloc(struct brc_context *ctx, void *old, size_t count, size_t size);
+/* Passes a block of count items on; where it is NULL, records BRC_ERR_MEMORY with their size. */
+void *brc_alloc_check(struct brc_context *ctx, void *block, size_t count, size_t size);
 
 /* One log line on standard error, unless ctx->quiet. */
 void brc_log(const struct brc_context *ctx, const char *format, ...)

@@ -160,17 +160,23 @@ BRC_LANES_INLINE void brc_lanes_transpose(brc_lanes r[BRC_LANES])
     r[3] = __builtin_shufflevector(odd, odd_up, 2, 3, 6, 7);
 }
 
-/* Four values from each of four places, to lanes: lane i of r[j] is p[i][j]. */
+/* Two values from each of four places, to lanes: lane i of r[j] is p[i][j]. Loaded in halves, as
+ * registers of 32 bytes are in effect two of 16: the two shuffles that follow stay within halves,
+ * where a transposition of four whole rows crosses them. */
+BRC_LANES_INLINE void brc_lanes_gather2(brc_lanes r[2], const double *const p[BRC_LANES])
+{
+    brc_lanes even = __builtin_shufflevector(*(const brc_pair_loose *)p[0],
+                                             *(const brc_pair_loose *)p[2], 0, 1, 2, 3);
+    brc_lanes odd = __builtin_shufflevector(*(const brc_pair_loose *)p[1],
+                                            *(const brc_pair_loose *)p[3], 0, 1, 2, 3);
+    r[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+    r[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+}
+
 BRC_LANES_INLINE void brc_lanes_gather4(brc_lanes r[BRC_LANES], const double *const p[BRC_LANES])
 {
-    for (int k = 0; k < BRC_LANES; k += 2) {
-        brc_lanes even = __builtin_shufflevector(*(const brc_pair_loose *)(p[0] + k),
-                                                 *(const brc_pair_loose *)(p[2] + k), 0, 1, 2, 3);
-        brc_lanes odd = __builtin_shufflevector(*(const brc_pair_loose *)(p[1] + k),
-                                                *(const brc_pair_loose *)(p[3] + k), 0, 1, 2, 3);
-        r[k] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
-        r[k + 1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
-    }
+    for (int k = 0; k < BRC_LANES; k += 2)
+        brc_lanes_gather2(r + k, (const double *const[]){p[0] + k, p[1] + k, p[2] + k, p[3] + k});
 }
 
 /* Four rows of 3 values, one after the other, to and from lanes. */
@@ -200,14 +206,9 @@ BRC_LANES_INLINE void brc_lanes_put3(double (*x)[3], const brc_lanes r[3])
 /* Rows of 6 values at four places, to lanes. */
 BRC_LANES_INLINE void brc_lanes_gather6(brc_lanes r[6], double (*x)[6], const int32_t row[4])
 {
-    for (int k = 0; k < 6; k += 2) {
-        brc_lanes lo = __builtin_shufflevector(*(const brc_pair_loose *)&x[row[0]][k],
-                                               *(const brc_pair_loose *)&x[row[2]][k], 0, 1, 2, 3);
-        brc_lanes hi = __builtin_shufflevector(*(const brc_pair_loose *)&x[row[1]][k],
-                                               *(const brc_pair_loose *)&x[row[3]][k], 0, 1, 2, 3);
-        r[k] = __builtin_shufflevector(lo, hi, 0, 4, 2, 6);
-        r[k + 1] = __builtin_shufflevector(lo, hi, 1, 5, 3, 7);
-    }
+    for (int k = 0; k < 6; k += 2)
+        brc_lanes_gather2(r + k, (const double *const[]){x[row[0]] + k, x[row[1]] + k,
+                                                         x[row[2]] + k, x[row[3]] + k});
 }
 
 /* Two values of four rows, from lanes. The first of equal rows is what stays. */
@@ -240,12 +241,7 @@ BRC_LANES_INLINE void brc_lanes_scatter3(double (*x)[3], const int32_t row[4], c
 /* Rows of 3 values at four places, to lanes. */
 BRC_LANES_INLINE void brc_lanes_gather3(brc_lanes r[3], double (*x)[3], const int32_t row[4])
 {
-    brc_lanes lo = __builtin_shufflevector(*(const brc_pair_loose *)x[row[0]],
-                                           *(const brc_pair_loose *)x[row[2]], 0, 1, 2, 3);
-    brc_lanes hi = __builtin_shufflevector(*(const brc_pair_loose *)x[row[1]],
-                                           *(const brc_pair_loose *)x[row[3]], 0, 1, 2, 3);
-    r[0] = __builtin_shufflevector(lo, hi, 0, 4, 2, 6);
-    r[1] = __builtin_shufflevector(lo, hi, 1, 5, 3, 7);
+    brc_lanes_gather2(r, (const double *const[]){x[row[0]], x[row[1]], x[row[2]], x[row[3]]});
     r[2] = (brc_lanes){x[row[0]][2], x[row[1]][2], x[row[2]][2], x[row[3]][2]};
 }
 

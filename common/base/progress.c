@@ -33,6 +33,11 @@ const char *brc_progress_duration(double seconds, char *buffer, size_t size)
     return buffer;
 }
 
+static double interval(bool is_often)
+{
+    return is_often ? interval_terminal : interval_plain;
+}
+
 static bool is_terminal(FILE *out)
 {
     const char *kind = getenv("TERM");
@@ -59,12 +64,11 @@ void brc_progress_begin_pipe(struct brc_progress *p, int descriptor)
     p->started = p->last_drawn = brc_progress_clock();
 }
 
+/* A pipe is fed as often as a terminal: what the parent draws on may be one. */
 bool brc_progress_is_due(const struct brc_progress *p)
 {
-    if (p->is_quiet)
-        return false;
-    bool often = p->is_terminal || p->pipe >= 0;
-    return brc_progress_clock() - p->last_drawn >= (often ? interval_terminal : interval_plain);
+    double now = brc_progress_clock();
+    return !p->is_quiet && now - p->last_drawn >= interval(p->is_terminal || p->pipe >= 0);
 }
 
 /* Steps a second, smoothed over the last seconds: a step costs more or less as contacts open. */
@@ -99,15 +103,6 @@ static const char *time_left(const struct brc_progress_run *run, char *buffer, s
     return buffer;
 }
 
-/* Part of all steps, the most that may be left included. */
-static double part_done(const struct brc_progress_report *r)
-{
-    double all = (double)r->step + r->steps_left;
-    if (r->is_done)
-        return 1;
-    return all > 0 ? (double)r->step / all : 0; /* 0 where it is not known */
-}
-
 static void draw_bar(FILE *out, double fraction)
 {
     int full = (int)(fraction * BAR_WIDTH + 0.5);
@@ -121,10 +116,12 @@ static void draw_run(const struct brc_progress *p, const struct brc_progress_run
 {
     const struct brc_progress_report *r = &run->report;
     char left[64], elapsed[32];
+    double steps =
+        (double)r->step + r->steps_left; /* NAN while the end is not known: no bar then */
     brc_progress_duration(brc_progress_clock() - p->started, elapsed, sizeof elapsed);
     fprintf(p->out, "%-*s ", LABEL_WIDTH, run->label);
     if (p->is_terminal)
-        draw_bar(p->out, part_done(r));
+        draw_bar(p->out, r->is_done ? 1 : steps > 0 ? (double)r->step / steps : 0);
     fprintf(p->out,
             " step %7" PRId64 "  strain %.4f %%  stress %8.3f MPa  broken %6" PRId64 "  %s  %s",
             r->step, 100 * r->strain, 1e-6 * r->stress, r->broken, elapsed,
@@ -148,21 +145,16 @@ static void draw(struct brc_progress *p)
     p->last_drawn = brc_progress_clock();
 }
 
-/* A full pipe drops nothing: reports are smaller than what a pipe takes at once. A parent that has
- * gone is noticed elsewhere. */
-static void send_report(struct brc_progress *p, const struct brc_progress_report *report)
-{
-    ssize_t sent = write(p->pipe, report, sizeof *report);
-    (void)sent;
-    p->last_drawn = brc_progress_clock();
-}
-
+/* What is written to a full pipe waits and is not dropped: reports are smaller than what a pipe
+ * takes at once. A parent that has gone is noticed elsewhere. */
 void brc_progress_update(struct brc_progress *p, int run, const struct brc_progress_report *report)
 {
     if (p->is_quiet)
         return;
     if (p->pipe >= 0) {
-        send_report(p, report);
+        ssize_t sent = write(p->pipe, report, sizeof *report);
+        (void)sent;
+        p->last_drawn = brc_progress_clock();
         return;
     }
     store_report(&p->run[run], report);
@@ -185,14 +177,13 @@ void brc_work_begin(struct brc_work *w, const struct brc_context *ctx, const cha
 {
     *w = (struct brc_work){.ctx = ctx, .what = what, .is_terminal = is_terminal(stderr)};
     w->started = brc_progress_clock();
-    w->last_drawn = w->started + 1 - (w->is_terminal ? interval_terminal : interval_plain);
+    w->last_drawn = w->started + 1 - interval(w->is_terminal);
 }
 
 void brc_work_update(struct brc_work *w, double fraction)
 {
     double now = brc_progress_clock();
-    if (w->ctx->quiet ||
-        now - w->last_drawn < (w->is_terminal ? interval_terminal : interval_plain))
+    if (w->ctx->quiet || now - w->last_drawn < interval(w->is_terminal))
         return;
     char elapsed[32];
     brc_progress_duration(now - w->started, elapsed, sizeof elapsed);

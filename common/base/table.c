@@ -79,11 +79,7 @@ static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t
         if (block && unit == LARGE_PAGE)
             (void)madvise(block, bytes, MADV_HUGEPAGE); /* a wish: pages may stay small */
     }
-    if (!block)
-        brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__,
-                      "out of memory: %zu rows of %zu bytes; use fewer grains or a larger machine",
-                      cap, row_size);
-    return block;
+    return brc_alloc_check(ctx, block, cap, row_size);
 }
 
 /* Allocates new columns of cap rows, filled by from (see brc_table_gather) or by the old rows in
@@ -104,11 +100,9 @@ static int replace_columns(struct brc_context *ctx, struct brc_table *t, const s
         size_t size = brc_field_size(&t->set.fields[i]);
         char *to = block + offset[i];
         const char *old = brc_table_column(t, i);
-        size_t kept = t->n < n ? t->n : n;
+        size_t kept = from || t->n > n ? n : t->n;
         if (!from && kept > 0)
             memcpy(to, old, kept * size);
-        if (!from)
-            memset(to + kept * size, 0, (cap - kept) * size);
         for (size_t row = 0; from && row < n; row++) {
             if (from[row] == BRC_NEW_ROW)
                 memset(to + row * size, 0, size);
@@ -117,8 +111,7 @@ static int replace_columns(struct brc_context *ctx, struct brc_table *t, const s
                 memcpy(to + row * size, old + from[row] * size, size);
             }
         }
-        if (from)
-            memset(to + n * size, 0, (filled - n) * size);
+        memset(to + kept * size, 0, (filled - kept) * size);
     }
     for (int i = 0; i < t->set.n; i++)
         *column_slot(t, i) = block + offset[i];

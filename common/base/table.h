@@ -55,9 +55,6 @@ struct brc_field {
 #define BRC_FIELD3_RENAMED(type, name, in_files, n, flags, unit, meaning) \
     {#in_files, BRC_TYPE_OF(type), n, flags, unit, meaning, offsetof(BRC_OWNER, name)},
 
-#define BRC_FIELD3_RENAMED(type, name, in_files, n, flags, unit, meaning) \
-    {#in_files, BRC_TYPE_OF(type), n, flags, unit, meaning, offsetof(BRC_OWNER, name)},
-
 /* A field list with the size of its owner struct; all zero for "no fields". */
 struct brc_fieldset {
     const struct brc_field *fields;

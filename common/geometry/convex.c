@@ -32,43 +32,36 @@ struct edge {
     int32_t from, to, vertex;
 };
 
-/* Work space of a clip; kept between calls. */
-struct scratch {
-    size_t cap_vertices, cap_faces, cap_loop, cap_edges, cap_cuts;
-    double *height;  /* distance of a vertex from the plane */
-    int8_t *side;    /* SIDE_IN, SIDE_ON, SIDE_OUT */
-    int32_t *rename; /* new number of a vertex, -1: gone */
-    struct brc_plane *plane;
-    size_t *first;
-    int32_t *loop;
-    struct edge *edges, *cuts;
-    size_t n_faces, n_loop, n_edges, n_cuts;
+/* What a clip finds out about a vertex. */
+struct vertex {
+    double height;  /* distance from the plane, positive outside */
+    int32_t side;   /* SIDE_IN, SIDE_ON, SIDE_OUT */
+    int32_t number; /* in the clipped body, -1: gone */
 };
 
-void brc_convex_init(struct brc_convex *c)
-{
-    memset(c, 0, sizeof *c);
-}
+/* Work space of a clip; kept between calls, as a body is clipped by tens of planes. */
+struct scratch {
+    size_t cap_vertices, cap_edges, cap_cuts, n_edges, n_cuts;
+    struct vertex *vertex;
+    struct edge *edges, *cuts;
+    struct brc_convex clipped; /* the body that takes the place of the one being clipped */
+};
 
 void brc_convex_free(struct brc_convex *c)
 {
     struct scratch *s = c->scratch;
     if (s) {
-        free(s->height);
-        free(s->side);
-        free(s->rename);
-        free(s->plane);
-        free(s->first);
-        free(s->loop);
+        free(s->vertex);
         free(s->edges);
         free(s->cuts);
+        brc_convex_free(&s->clipped);
         free(s);
     }
     free(c->vertex);
     free(c->plane);
     free(c->first);
     free(c->loop);
-    brc_convex_init(c);
+    *c = (struct brc_convex){0};
 }
 
 int brc_convex_reserve(struct brc_context *ctx, struct brc_convex *c, size_t vertices, size_t faces,
@@ -79,22 +72,6 @@ int brc_convex_reserve(struct brc_context *ctx, struct brc_convex *c, size_t ver
     BRC_GROW(ctx, c->plane, cap, faces + 1);
     BRC_GROW(ctx, c->first, c->cap_faces, faces + 1);
     BRC_GROW(ctx, c->loop, c->cap_loop, loop);
-    return 0;
-}
-
-int brc_convex_copy(struct brc_context *ctx, struct brc_convex *to, const struct brc_convex *from)
-{
-    size_t n_loop = from->n_faces ? from->first[from->n_faces] : 0;
-    BRC_TRY(brc_convex_reserve(ctx, to, from->n_vertices, from->n_faces, n_loop));
-    to->n_vertices = from->n_vertices;
-    to->n_faces = from->n_faces;
-    to->first[0] = 0;
-    if (from->n_faces == 0)
-        return 0;
-    memcpy(to->vertex, from->vertex, from->n_vertices * sizeof *to->vertex);
-    memcpy(to->plane, from->plane, from->n_faces * sizeof *to->plane);
-    memcpy(to->first, from->first, (from->n_faces + 1) * sizeof *to->first);
-    memcpy(to->loop, from->loop, n_loop * sizeof *to->loop);
     return 0;
 }
 
@@ -130,20 +107,16 @@ static int scratch_reserve(struct brc_context *ctx, struct brc_convex *c)
             return BRC_ERR_MEMORY;
     }
     struct scratch *s = c->scratch;
-    size_t n_loop = c->first[c->n_faces];
+    size_t n_loop = c->first[c->n_faces], n_faces = c->n_faces + 1;
     /* a clip adds at most one vertex an edge and one face of at most as many vertices as edges */
     size_t vertices = c->n_vertices + n_loop, loop = 3 * n_loop + c->n_vertices;
-    size_t cap_height = s->cap_vertices, cap_side = s->cap_vertices, cap_plane = s->cap_faces;
-    BRC_GROW(ctx, s->height, cap_height, vertices);
-    BRC_GROW(ctx, s->side, cap_side, vertices);
-    BRC_GROW(ctx, s->rename, s->cap_vertices, vertices);
-    BRC_GROW(ctx, s->plane, cap_plane, c->n_faces + 1);
-    BRC_GROW(ctx, s->first, s->cap_faces, c->n_faces + 1);
-    BRC_GROW(ctx, s->loop, s->cap_loop, loop);
+    BRC_GROW(ctx, s->vertex, s->cap_vertices, vertices);
     BRC_GROW(ctx, s->edges, s->cap_edges, loop);
     BRC_GROW(ctx, s->cuts, s->cap_cuts, n_loop);
-    s->n_faces = s->n_loop = s->n_edges = s->n_cuts = 0;
-    return brc_convex_reserve(ctx, c, vertices, c->n_faces + 1, loop);
+    s->n_edges = s->n_cuts = 0;
+    BRC_TRY(brc_convex_reserve(ctx, &s->clipped, vertices, n_faces, loop));
+    s->clipped.n_faces = s->clipped.first[0] = 0;
+    return brc_convex_reserve(ctx, c, vertices, n_faces, loop);
 }
 
 /* Number of the vertex where the plane cuts the edge u-v; made at the first call. */
@@ -154,40 +127,46 @@ static int32_t cut_vertex(struct brc_convex *c, struct scratch *s, int32_t u, in
         if (s->cuts[i].from == low && s->cuts[i].to == high)
             return s->cuts[i].vertex;
     int32_t new = (int32_t)c->n_vertices++;
-    double t = s->height[low] / (s->height[low] - s->height[high]);
+    double t = s->vertex[low].height / (s->vertex[low].height - s->vertex[high].height);
     for (int k = 0; k < 3; k++)
         c->vertex[new][k] = c->vertex[low][k] + t * (c->vertex[high][k] - c->vertex[low][k]);
-    s->side[new] = SIDE_ON;
+    s->vertex[new].side = SIDE_ON;
     s->cuts[s->n_cuts++] = (struct edge){low, high, new};
     return new;
+}
+
+/* The clipped body's next face; its loop lies behind those before it and ends at end. */
+static void add_face(struct brc_convex *clipped, const struct brc_plane *plane, size_t end)
+{
+    clipped->plane[clipped->n_faces++] = *plane;
+    clipped->first[clipped->n_faces] = end;
 }
 
 /* Adds the part of face f inside the plane, and its edges in the plane. */
 static void clip_face(struct brc_convex *c, struct scratch *s, size_t f)
 {
-    size_t begin = s->n_loop, n = c->first[f + 1] - c->first[f];
+    size_t begin = s->clipped.first[s->clipped.n_faces], end = begin;
+    size_t n = c->first[f + 1] - c->first[f];
     const int32_t *loop = c->loop + c->first[f];
+    int32_t *clipped = s->clipped.loop;
     bool is_kept = false;
     for (size_t i = 0; i < n; i++) {
         int32_t u = loop[i], v = loop[i + 1 < n ? i + 1 : 0];
-        if (s->side[u] != SIDE_OUT)
-            s->loop[s->n_loop++] = u;
-        if (s->side[u] * s->side[v] < 0)
-            s->loop[s->n_loop++] = cut_vertex(c, s, u, v);
-        if (s->side[u] == SIDE_IN)
-            is_kept = true;
+        int32_t side = s->vertex[u].side;
+        if (side != SIDE_OUT)
+            clipped[end++] = u;
+        if (side * s->vertex[v].side < 0)
+            clipped[end++] = cut_vertex(c, s, u, v);
+        is_kept = is_kept || side == SIDE_IN;
     }
-    if (!is_kept) {
-        s->n_loop = begin;
+    if (!is_kept)
         return;
-    }
-    for (size_t i = begin; i < s->n_loop; i++) {
-        int32_t u = s->loop[i], v = s->loop[i + 1 < s->n_loop ? i + 1 : begin];
-        if (s->side[u] == SIDE_ON && s->side[v] == SIDE_ON)
+    for (size_t i = begin; i < end; i++) {
+        int32_t u = clipped[i], v = clipped[i + 1 < end ? i + 1 : begin];
+        if (s->vertex[u].side == SIDE_ON && s->vertex[v].side == SIDE_ON)
             s->edges[s->n_edges++] = (struct edge){u, v, 0};
     }
-    s->plane[s->n_faces] = c->plane[f];
-    s->first[s->n_faces++] = begin;
+    add_face(&s->clipped, &c->plane[f], end);
 }
 
 /* Removes pairs of opposite edges: these have a kept face on both sides. */
@@ -211,7 +190,7 @@ static int close_with_face(struct brc_context *ctx, struct scratch *s,
     if (s->n_edges < 3)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "clipping a convex cell leaves an open face of %zu edges",
                  s->n_edges);
-    size_t begin = s->n_loop, n = s->n_edges;
+    size_t end = s->clipped.first[s->clipped.n_faces], n = s->n_edges;
     int32_t at = s->edges[0].to;
     for (size_t k = 0; k < n; k++) {
         size_t i = 0;
@@ -219,35 +198,37 @@ static int close_with_face(struct brc_context *ctx, struct scratch *s,
             i++;
         if (i == s->n_edges)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "clipping a convex cell leaves a face in two parts");
-        s->loop[s->n_loop++] = at;
+        s->clipped.loop[end++] = at;
         at = s->edges[i].from;
         s->edges[i] = s->edges[--s->n_edges];
     }
-    s->plane[s->n_faces] = *plane;
-    s->first[s->n_faces++] = begin;
+    add_face(&s->clipped, plane, end);
     return 0;
 }
 
-/* Takes over the clipped faces and drops vertices that no face uses. */
-static void adopt(struct brc_convex *c, const struct scratch *s)
+/* Takes over the clipped faces, with the vertices that they use in the order in which they were,
+ * and keeps the old body's memory for the next clip. */
+static void adopt(struct brc_convex *c, struct scratch *s)
 {
-    for (size_t v = 0; v < c->n_vertices; v++)
-        s->rename[v] = -1;
-    for (size_t i = 0; i < s->n_loop; i++)
-        s->rename[s->loop[i]] = 0;
+    struct brc_convex *clipped = &s->clipped, old = *c;
+    size_t n_loop = clipped->first[clipped->n_faces];
     int32_t n = 0;
     for (size_t v = 0; v < c->n_vertices; v++)
-        if (s->rename[v] == 0) {
-            brc_copy(c->vertex[n], c->vertex[v]);
-            s->rename[v] = n++;
+        s->vertex[v].number = -1;
+    for (size_t i = 0; i < n_loop; i++)
+        s->vertex[clipped->loop[i]].number = 0;
+    for (size_t v = 0; v < c->n_vertices; v++)
+        if (s->vertex[v].number == 0) {
+            brc_copy(clipped->vertex[n], c->vertex[v]);
+            s->vertex[v].number = n++;
         }
-    c->n_vertices = (size_t)n;
-    memcpy(c->plane, s->plane, s->n_faces * sizeof *c->plane);
-    memcpy(c->first, s->first, s->n_faces * sizeof *c->first);
-    c->n_faces = s->n_faces;
-    c->first[c->n_faces] = s->n_loop;
-    for (size_t i = 0; i < s->n_loop; i++)
-        c->loop[i] = s->rename[s->loop[i]];
+    for (size_t i = 0; i < n_loop; i++)
+        clipped->loop[i] = s->vertex[clipped->loop[i]].number;
+    clipped->n_vertices = (size_t)n;
+    *c = *clipped;
+    c->scratch = s;
+    old.scratch = NULL;
+    *clipped = old;
 }
 
 int brc_convex_clip(struct brc_context *ctx, struct brc_convex *c, const struct brc_plane *plane,
@@ -261,10 +242,10 @@ int brc_convex_clip(struct brc_context *ctx, struct brc_convex *c, const struct 
     struct scratch *s = c->scratch;
     for (size_t v = 0; v < c->n_vertices; v++) {
         double h = brc_dot(plane->n, c->vertex[v]) - plane->d;
-        s->height[v] = h;
-        s->side[v] = h > tolerance ? SIDE_OUT : h < -tolerance ? SIDE_IN : SIDE_ON;
-        n_in += s->side[v] == SIDE_IN;
-        n_out += s->side[v] == SIDE_OUT;
+        int32_t side = h > tolerance ? SIDE_OUT : h < -tolerance ? SIDE_IN : SIDE_ON;
+        s->vertex[v] = (struct vertex){h, side, 0};
+        n_in += side == SIDE_IN;
+        n_out += side == SIDE_OUT;
     }
     if (n_out == 0)
         return 0;
@@ -348,19 +329,6 @@ void brc_convex_origin(const double middle[3], double reach, double origin[3])
         origin[k] = step * nearbyint(middle[k] / step);
 }
 
-/* Middle of the body's box. */
-static void middle_of(const struct brc_convex *c, double middle[3])
-{
-    for (int k = 0; k < 3; k++) {
-        double low = c->vertex[0][k], high = low;
-        for (size_t v = 1; v < c->n_vertices; v++) {
-            low = fmin(low, c->vertex[v][k]);
-            high = fmax(high, c->vertex[v][k]);
-        }
-        middle[k] = 0.5 * low + 0.5 * high;
-    }
-}
-
 /* Whether two planes differ by less than the tolerance within reach of the middle. */
 static bool is_same_plane(const struct brc_plane *p, const struct brc_plane *q,
                           const double middle[3], double reach, double tolerance)
@@ -390,13 +358,15 @@ int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
                         const struct brc_plane *planes, size_t n, double digits)
 {
     const double zero[3] = {0, 0, 0};
-    double far = 0, middle[3], origin[3], back[3];
+    double far = 0, low[3], high[3], middle[3], origin[3], back[3];
     for (size_t i = 0; i < n; i++)
         far = fmax(far, fabs(planes[i].d));
     BRC_TRY(brc_convex_from_planes(ctx, c, planes, n, zero, search_width * far));
     if (c->n_faces == 0)
         return 0;
-    middle_of(c, middle);
+    brc_box_of(low, high, c->vertex, c->n_vertices);
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * low[k] + 0.5 * high[k];
     double reach = brc_convex_reach(c, middle), tolerance = digits * (brc_norm(middle) + reach);
     struct brc_plane *plane = brc_alloc(ctx, n, sizeof *plane);
     if (!plane)
@@ -412,6 +382,14 @@ int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
     if (code == 0)
         brc_convex_shift(c, origin);
     return code;
+}
+
+size_t brc_convex_face(const struct brc_convex *c, int32_t id)
+{
+    size_t f = 0;
+    while (f < c->n_faces && c->plane[f].id != id)
+        f++;
+    return f;
 }
 
 double brc_convex_reach(const struct brc_convex *c, const double from[3])

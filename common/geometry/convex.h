@@ -13,9 +13,9 @@ struct brc_plane {
     int32_t id;
 };
 
-/* A convex polyhedron: faces are vertex loops, counter-clockwise seen from outside. All memory is
- * owned and grows as needed, so one object can be reused for many cells. After a failure it
- * holds no valid body, but can be filled anew or freed. */
+/* A convex polyhedron: faces are vertex loops, counter-clockwise seen from outside. Zero before the
+ * first use. All memory is owned and grows as needed, so one object can be reused for many cells.
+ * After a failure it holds no valid body, but can be filled anew or freed. */
 struct brc_convex {
     size_t n_vertices, cap_vertices;
     double (*vertex)[3];
@@ -27,12 +27,10 @@ struct brc_convex {
     void *scratch; /* owned by convex.c */
 };
 
-void brc_convex_init(struct brc_convex *c);
 void brc_convex_free(struct brc_convex *c);
 /* Makes room; what the object holds stays. */
 int brc_convex_reserve(struct brc_context *ctx, struct brc_convex *c, size_t vertices, size_t faces,
                        size_t loop);
-int brc_convex_copy(struct brc_context *ctx, struct brc_convex *to, const struct brc_convex *from);
 /* Axis-parallel box; face ids 0..5 = -x +x -y +y -z +z. */
 int brc_convex_box(struct brc_context *ctx, struct brc_convex *c, const double low[3],
                    const double high[3]);
@@ -59,6 +57,8 @@ void brc_convex_shift(struct brc_convex *c, const double by[3]);
  */
 int brc_convex_clip(struct brc_context *ctx, struct brc_convex *c, const struct brc_plane *plane,
                     double tolerance, bool *changed);
+/* Position of the face with this id, n_faces when there is none. */
+size_t brc_convex_face(const struct brc_convex *c, int32_t id);
 /* Largest distance from a point to a vertex. */
 double brc_convex_reach(const struct brc_convex *c, const double from[3]);
 

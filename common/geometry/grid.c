@@ -4,16 +4,25 @@
 #include "common/geometry/grid.h"
 
 #include "common/base/grow.h"
+#include "common/base/pool.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
 
+/* Cells of points in skins: few points then lie near the border of their cell, and most look into
+ * theirs alone. */
+static const double point_cells = 64;
+
 struct grid {
-    double cell;      /* edge, m */
-    size_t n_buckets; /* a power of two */
-    uint32_t *first;  /* [n_buckets + 1] */
-    uint32_t *body;   /* [n] bodies of each bucket, ascending */
-    int64_t (*at)[3]; /* [n] cell of each body */
+    const double (*x)[3];
+    const double *radius; /* NULL: points */
+    size_t n;
+    double skin, largest; /* m; largest of the radii */
+    double cell;          /* edge, m */
+    size_t n_buckets;     /* a power of two */
+    uint32_t *first;      /* [n_buckets + 1] */
+    uint32_t *body;       /* [n] bodies of each bucket, ascending */
+    int64_t (*at)[3];     /* [n] cell of each body */
 };
 
 void brc_neighbours_free(struct brc_neighbours *c)
@@ -38,31 +47,29 @@ static size_t bucket_of(const struct grid *g, const int64_t at[3])
     return (size_t)(h ^ h >> 31) & (g->n_buckets - 1);
 }
 
-static void grid_free(struct grid *g)
+static double radius_of(const struct grid *g, size_t i)
 {
-    free(g->first);
-    free(g->body);
-    free(g->at);
+    return g->radius ? g->radius[i] : 0;
 }
 
-static int grid_fill(struct brc_context *ctx, struct grid *g, const double (*x)[3], size_t n)
+static int grid_fill(struct brc_context *ctx, struct grid *g, struct brc_pool *pool)
 {
     g->n_buckets = 16;
-    while (g->n_buckets < 2 * n)
+    while (g->n_buckets < 2 * g->n)
         g->n_buckets *= 2;
-    g->first = brc_alloc(ctx, g->n_buckets + 1, sizeof *g->first);
-    g->body = brc_alloc(ctx, n, sizeof *g->body);
-    g->at = brc_alloc(ctx, n, sizeof *g->at);
-    if (!g->first || !g->body || !g->at)
+    g->first = brc_pool_alloc(ctx, pool, g->n_buckets + 1, sizeof *g->first);
+    g->body = brc_pool_alloc(ctx, pool, g->n, sizeof *g->body);
+    g->at = brc_pool_alloc(ctx, pool, g->n, sizeof *g->at);
+    if (pool->is_failed)
         return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < g->n; i++) {
         for (int k = 0; k < 3; k++)
-            g->at[i][k] = (int64_t)floor(x[i][k] / g->cell);
+            g->at[i][k] = (int64_t)floor(g->x[i][k] / g->cell);
         g->first[bucket_of(g, g->at[i]) + 1]++;
     }
     for (size_t b = 0; b < g->n_buckets; b++)
         g->first[b + 1] += g->first[b];
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < g->n; i++)
         g->body[g->first[bucket_of(g, g->at[i])]++] = (uint32_t)i;
     for (size_t b = g->n_buckets; b > 0; b--)
         g->first[b] = g->first[b - 1];
@@ -76,25 +83,39 @@ static int compare_high(const void *p, const void *q)
     return (a[1] > b[1]) - (a[1] < b[1]);
 }
 
-/* Appends the pairs (i, j > i) of body i, ascending in j. */
-static int list_body(struct brc_context *ctx, const struct grid *g, const double (*x)[3],
-                     const double *radius, double skin, size_t i, struct brc_neighbours *out)
+/* Appends the pairs (i, j > i) of body i with those of one cell. Other cells may share its bucket.
+ */
+static int list_cell(struct brc_context *ctx, const struct grid *g, const int64_t at[3], size_t i,
+                     struct brc_neighbours *out)
+{
+    size_t bucket = bucket_of(g, at);
+    for (uint32_t k = g->first[bucket]; k < g->first[bucket + 1]; k++) {
+        size_t j = g->body[k];
+        if (j <= i || g->at[j][0] != at[0] || g->at[j][1] != at[1] || g->at[j][2] != at[2])
+            continue;
+        double d[3], limit = radius_of(g, i) + radius_of(g, j) + g->skin;
+        brc_sub(d, g->x[j], g->x[i]);
+        if (brc_norm2(d) < limit * limit)
+            BRC_TRY(brc_neighbours_add(ctx, out, i, j));
+    }
+    return 0;
+}
+
+/* The pairs of body i, ascending in j. */
+static int list_body(struct brc_context *ctx, const struct grid *g, size_t i,
+                     struct brc_neighbours *out)
 {
     size_t start = out->n;
-    for (int64_t c = 0; c < 27; c++) {
-        const int64_t at[3] = {g->at[i][0] + c % 3 - 1, g->at[i][1] + c / 3 % 3 - 1,
-                               g->at[i][2] + c / 9 - 1};
-        size_t bucket = bucket_of(g, at);
-        for (uint32_t k = g->first[bucket]; k < g->first[bucket + 1]; k++) {
-            size_t j = g->body[k];
-            if (j <= i || g->at[j][0] != at[0] || g->at[j][1] != at[1] || g->at[j][2] != at[2])
-                continue;
-            double d[3], limit = radius[i] + radius[j] + skin;
-            brc_sub(d, x[j], x[i]);
-            if (brc_norm2(d) < limit * limit)
-                BRC_TRY(brc_neighbours_add(ctx, out, i, j));
-        }
+    int64_t low[3], high[3], at[3];
+    double reach = radius_of(g, i) + g->largest + g->skin;
+    for (int k = 0; k < 3; k++) {
+        low[k] = (int64_t)floor((g->x[i][k] - reach) / g->cell);
+        high[k] = (int64_t)floor((g->x[i][k] + reach) / g->cell);
     }
+    for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
+        for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+            for (at[0] = low[0]; at[0] <= high[0]; at[0]++)
+                BRC_TRY(list_cell(ctx, g, at, i, out));
     if (out->n > start)
         qsort(out->pair + start, out->n - start, sizeof *out->pair, compare_high);
     return 0;
@@ -103,15 +124,17 @@ static int list_body(struct brc_context *ctx, const struct grid *g, const double
 int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
                    double skin, struct brc_neighbours *out)
 {
+    struct brc_pool pool = {0};
+    struct grid g = {.x = x, .radius = radius, .n = n, .skin = skin};
     out->n = 0;
     if (n < 2)
         return 0;
-    struct grid g = {0};
     for (size_t i = 0; i < n; i++)
-        g.cell = fmax(g.cell, 2 * radius[i] + skin);
-    int code = grid_fill(ctx, &g, x, n);
-    for (size_t i = 0; code == 0 && i < n; i++)
-        code = list_body(ctx, &g, x, radius, skin, i, out);
-    grid_free(&g);
+        g.largest = fmax(g.largest, radius_of(&g, i));
+    g.cell = radius ? 2 * g.largest + skin : point_cells * skin;
+    int code = grid_fill(ctx, &g, &pool);
+    for (size_t i = 0; code == 0 && i < n && (out->enough == 0 || out->n < out->enough); i++)
+        code = list_body(ctx, &g, i, out);
+    brc_pool_free(&pool);
     return code;
 }

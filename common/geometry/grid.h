@@ -9,12 +9,14 @@
 /* Sorted pairs (low, high) of bodies whose bounding spheres come within the skin of each other. */
 struct brc_neighbours {
     size_t n, cap;
+    size_t enough; /* pairs after which the search ends with a body; 0: it goes on to the last */
     int32_t (*pair)[2];
 };
 
 int brc_neighbours_add(struct brc_context *ctx, struct brc_neighbours *c, size_t a, size_t b);
 void brc_neighbours_free(struct brc_neighbours *c);
-/* Pairs with |x_i - x_j| < radius_i + radius_j + skin. Memory in out is reused. */
+/* Pairs with |x_i - x_j| < radius_i + radius_j + skin. radius NULL: points, of which most are much
+ * farther apart than the skin. Memory in out is used again. */
 int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
                    double skin, struct brc_neighbours *out);
 

@@ -3,7 +3,8 @@
  * Morton's order is simpler and jumps across the whole box at every power of two. */
 #include "common/geometry/hilbert.h"
 
-#include <math.h>
+#include "common/geometry/vec.h"
+
 #include <stdlib.h>
 
 enum { BITS = 21 };
@@ -48,16 +49,13 @@ static int by_key(const void *a, const void *b)
 
 int brc_hilbert_order(struct brc_context *ctx, double (*x)[3], size_t n, size_t *order)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, edge = 0;
+    double low[3], high[3], edge = 0;
     struct entry *entries = brc_alloc(ctx, n, sizeof *entries);
     if (!entries)
         return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++)
-            low[k] = fmin(low[k], x[i][k]);
-    for (size_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++)
-            edge = fmax(edge, x[i][k] - low[k]);
+    brc_box_of(low, high, x, n);
+    for (int k = 0; k < 3; k++)
+        edge = fmax(edge, high[k] - low[k]);
     double scale = edge > 0 ? ((1 << BITS) - 1) / edge : 0;
     for (size_t i = 0; i < n; i++) {
         uint32_t lattice[3];

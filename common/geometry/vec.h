@@ -5,6 +5,7 @@
 #define BRC_VEC_H
 
 #include <math.h>
+#include <stddef.h>
 
 static inline void brc_set(double r[3], double x, double y, double z)
 {
@@ -136,6 +137,18 @@ static inline void brc_quat_from_rotation(double q[4], const double phi[3])
     q[1] = s * phi[0];
     q[2] = s * phi[1];
     q[3] = s * phi[2];
+}
+
+/* The smallest box that holds n points; without any, low lies above high. */
+static inline void brc_box_of(double low[3], double high[3], double (*x)[3], size_t n)
+{
+    brc_set(low, HUGE_VAL, HUGE_VAL, HUGE_VAL);
+    brc_set(high, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL);
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], x[i][k]);
+            high[k] = fmax(high[k], x[i][k]);
+        }
 }
 
 /* Velocity of the point at arm r on a body that moves with v and spins with w. */

@@ -3,11 +3,6 @@
 
 #include "common/base/simd.h"
 
-double brc_sum_exact(const double *x, size_t n)
-{
-    return brc_sum_exact_of(x, n, n);
-}
-
 double brc_sum_exact_of(const double *x, size_t n, size_t of)
 {
 #ifdef BRC_FREE_SUMS /* what exact sums cost: a build for the bench alone */

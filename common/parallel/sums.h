@@ -18,13 +18,17 @@
 
 #include "common/base/error.h"
 
-/* The sum of n terms; NAN where one is not finite. The quanta hang on n, so that n counts the terms
- * of the whole specimen, zeros included. */
-double brc_sum_exact(const double *x, size_t n);
-/* The same where only n of `of` terms are given, as the others are 0. */
+/* The sum of n of `of` terms, the others being 0; NAN where one is not finite. The quanta hang on
+ * `of`, so that it counts the terms of the whole specimen, zeros included. */
 double brc_sum_exact_of(const double *x, size_t n, size_t of);
 /* Its loops for each instruction set. */
 double brc_sum_exact_base(const double *x, size_t n, size_t of);
 double brc_sum_exact_avx2(const double *x, size_t n, size_t of);
+
+/* The sum of terms that are all given. */
+static inline double brc_sum_exact(const double *x, size_t n)
+{
+    return brc_sum_exact_of(x, n, n);
+}
 
 #endif

@@ -8,22 +8,35 @@
 
 enum { TERM_BITS = 53, LARGEST_EXPONENT = 960 };
 
+/* The last n terms, fewer than lanes; zeros behind them change neither the largest nor the sum. */
+static inline brc_lanes rest_of(const double *x, size_t n)
+{
+    brc_lanes rest = brc_lanes_all(0);
+    for (size_t i = 0; i < n; i++)
+        rest[i] = x[i];
+    return rest;
+}
+
+/* The largest size of a term, NAN where one is not finite. */
 static double largest(const double *x, size_t n)
 {
-    brc_lanes most = brc_lanes_all(0), wrong = brc_lanes_all(0);
-    size_t i = 0;
-    for (; i + BRC_LANES <= n; i += BRC_LANES) {
+    brc_lanes rest = rest_of(x + n - n % BRC_LANES, n % BRC_LANES);
+    brc_lanes most = brc_lanes_abs(rest), wrong = 0 * rest;
+    for (size_t i = 0; i + BRC_LANES <= n; i += BRC_LANES) {
         brc_lanes a = brc_lanes_at(x + i);
         most = brc_lanes_max(brc_lanes_abs(a), most);
         wrong += 0 * a; /* not 0 where a term is not finite: comparisons pass over these */
     }
-    double of_rest = 0, rest_wrong = 0;
-    for (; i < n; i++) {
-        of_rest = fmax(of_rest, fabs(x[i]));
-        rest_wrong += 0 * x[i];
-    }
-    of_rest = fmax(of_rest, fmax(fmax(most[0], most[1]), fmax(most[2], most[3])));
-    return rest_wrong == 0 && brc_lanes_sum(wrong) == 0 ? of_rest : NAN;
+    double all = fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
+    return brc_lanes_sum(wrong) == 0 ? all : NAN;
+}
+
+/* Adds four terms, each cut by either sigma. */
+static inline void add_cut(brc_lanes sum[2], brc_lanes a, const double sigma[2])
+{
+    brc_lanes cut = (a + sigma[0]) - sigma[0];
+    sum[0] += cut;
+    sum[1] += ((a - cut) + sigma[1]) - sigma[1];
 }
 
 static double sum_exact(const double *x, size_t n, size_t of)
@@ -40,20 +53,11 @@ static double sum_exact(const double *x, size_t n, size_t of)
      * than 2^53; the rest is at most half of that multiple, and so on */
     double sigma[2] = {ldexp(1.5, exponent + count),
                        ldexp(1.5, exponent + count - TERM_BITS + count)};
-    brc_lanes high = brc_lanes_all(0), low = brc_lanes_all(0);
-    size_t i = 0;
-    for (; i + BRC_LANES <= n; i += BRC_LANES) {
-        brc_lanes a = brc_lanes_at(x + i), cut = (a + sigma[0]) - sigma[0];
-        high += cut;
-        low += ((a - cut) + sigma[1]) - sigma[1];
-    }
-    double sum = brc_lanes_sum(high), rest = brc_lanes_sum(low);
-    for (; i < n; i++) {
-        double cut = (x[i] + sigma[0]) - sigma[0];
-        sum += cut;
-        rest += ((x[i] - cut) + sigma[1]) - sigma[1];
-    }
-    return sum + rest;
+    brc_lanes sum[2] = {brc_lanes_all(0), brc_lanes_all(0)};
+    for (size_t i = 0; i + BRC_LANES <= n; i += BRC_LANES)
+        add_cut(sum, brc_lanes_at(x + i), sigma);
+    add_cut(sum, rest_of(x + n - n % BRC_LANES, n % BRC_LANES), sigma);
+    return brc_lanes_sum(sum[0]) + brc_lanes_sum(sum[1]);
 }
 
 #endif

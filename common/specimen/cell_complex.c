@@ -6,6 +6,7 @@
 
 #include "common/base/invariant.h"
 #include "common/base/grow.h"
+#include "common/base/tuples.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
@@ -14,9 +15,15 @@
 enum { SIDE_IN = -1, SIDE_ON = 0, SIDE_OUT = 1 };
 enum { HAS_IN = 1, HAS_ON = 2, HAS_OUT = 4 };
 
-/* Directed edge of a cell in the clipping plane, or (cell = 0) a cut edge with from < to. */
+/* Directed edge of a cell in the clipping plane, or (cell = 0, from = low) a cut edge. Sorted by
+ * its first four members. */
 struct edge {
-    int32_t cell, from, to;
+    int32_t cell, low, high, from, to;
+};
+
+struct edges {
+    struct edge *list;
+    size_t n, cap;
 };
 
 /* Work space of one clip. */
@@ -31,22 +38,16 @@ struct clip {
     uint8_t *state;    /* [n_facets] which sides the facet's vertices are on, see enum */
     int32_t *work;     /* one loop under construction */
     size_t cap_work;
-    struct edge *cut, *open;
-    size_t n_cut, cap_cut, n_open, cap_open;
+    struct edges cut, open;
+    struct brc_pool pool; /* owns the arrays with a stated length */
 };
-
-void brc_cell_complex_init(struct brc_cell_complex *c, size_t n_cells)
-{
-    memset(c, 0, sizeof *c);
-    c->n_cells = n_cells;
-}
 
 void brc_cell_complex_free(struct brc_cell_complex *c)
 {
     free(c->vertex);
     free(c->facet);
     free(c->loop);
-    brc_cell_complex_init(c, 0);
+    *c = (struct brc_cell_complex){0};
 }
 
 int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex *c,
@@ -96,11 +97,11 @@ static int clip_begin(struct brc_context *ctx, struct clip *w, double tolerance)
 {
     struct brc_cell_complex *c = w->c;
     w->n_old = c->n_vertices;
-    w->height = brc_alloc(ctx, w->n_old, sizeof *w->height);
-    w->side = brc_alloc(ctx, w->n_old, sizeof *w->side);
-    w->is_hit = brc_alloc(ctx, c->n_cells, 1);
-    w->is_alive = brc_alloc(ctx, c->n_cells, 1);
-    w->state = brc_alloc(ctx, c->n_facets, 1);
+    w->height = brc_pool_alloc(ctx, &w->pool, w->n_old, sizeof *w->height);
+    w->side = brc_pool_alloc(ctx, &w->pool, w->n_old, sizeof *w->side);
+    w->is_hit = brc_pool_alloc(ctx, &w->pool, c->n_cells, 1);
+    w->is_alive = brc_pool_alloc(ctx, &w->pool, c->n_cells, 1);
+    w->state = brc_pool_alloc(ctx, &w->pool, c->n_facets, 1);
     if (!w->height || !w->side || !w->is_hit || !w->is_alive || !w->state)
         return BRC_ERR_MEMORY;
     for (size_t v = 0; v < w->n_old; v++) {
@@ -111,43 +112,22 @@ static int clip_begin(struct brc_context *ctx, struct clip *w, double tolerance)
     return 0;
 }
 
-static void clip_end(struct clip *w)
-{
-    free(w->height);
-    free(w->side);
-    free(w->is_hit);
-    free(w->is_alive);
-    free(w->state);
-    free(w->work);
-    free(w->cut);
-    free(w->open);
-}
-
 /* New vertices are on the plane. */
 static int side_of(const struct clip *w, int32_t v)
 {
     return (size_t)v < w->n_old ? w->side[v] : SIDE_ON;
 }
 
-static int by_cell_and_ends(const void *a, const void *b)
+static struct edge edge_of(int32_t cell, int32_t from, int32_t to)
 {
-    const struct edge *p = a, *q = b;
-    int32_t p_low = p->from < p->to ? p->from : p->to, p_high = p->from ^ p->to ^ p_low;
-    int32_t q_low = q->from < q->to ? q->from : q->to, q_high = q->from ^ q->to ^ q_low;
-    if (p->cell != q->cell)
-        return p->cell < q->cell ? -1 : 1;
-    if (p_low != q_low)
-        return p_low < q_low ? -1 : 1;
-    if (p_high != q_high)
-        return p_high < q_high ? -1 : 1;
-    return p->from < q->from ? -1 : p->from > q->from;
+    bool is_rising = from < to;
+    return (struct edge){cell, is_rising ? from : to, is_rising ? to : from, from, to};
 }
 
-static int push_edge(struct brc_context *ctx, struct edge **list, size_t *n, size_t *cap,
-                     struct edge e)
+static int push_edge(struct brc_context *ctx, struct edges *edges, struct edge e)
 {
-    BRC_GROW(ctx, *list, *cap, *n + 1);
-    (*list)[(*n)++] = e;
+    BRC_GROW(ctx, edges->list, edges->cap, edges->n + 1);
+    edges->list[edges->n++] = e;
     return 0;
 }
 
@@ -172,9 +152,8 @@ static int find_cuts(struct brc_context *ctx, struct clip *w)
             facet->n = 0;
         for (int32_t i = 0; i < facet->n && has_out; i++) {
             int32_t u = loop[i], v = loop[i + 1 < facet->n ? i + 1 : 0];
-            struct edge e = {0, u < v ? u : v, u < v ? v : u};
             if (w->side[u] * w->side[v] < 0)
-                BRC_TRY(push_edge(ctx, &w->cut, &w->n_cut, &w->cap_cut, e));
+                BRC_TRY(push_edge(ctx, &w->cut, edge_of(0, u < v ? u : v, u < v ? v : u)));
         }
     }
     return 0;
@@ -183,16 +162,17 @@ static int find_cuts(struct brc_context *ctx, struct clip *w)
 /* One vertex for each cut edge; its number is n_old + position in the sorted list. */
 static int make_vertices(struct brc_context *ctx, struct clip *w)
 {
-    if (w->n_cut == 0)
+    struct edge *cut = w->cut.list;
+    if (w->cut.n == 0)
         return 0;
-    qsort(w->cut, w->n_cut, sizeof *w->cut, by_cell_and_ends);
+    qsort(cut, w->cut.n, sizeof *cut, brc_tuple4_compare);
     size_t n = 1;
-    for (size_t i = 1; i < w->n_cut; i++)
-        if (by_cell_and_ends(&w->cut[i], &w->cut[n - 1]) != 0)
-            w->cut[n++] = w->cut[i];
-    w->n_cut = n;
+    for (size_t i = 1; i < w->cut.n; i++)
+        if (brc_tuple4_compare(&cut[i], &cut[n - 1]) != 0)
+            cut[n++] = cut[i];
+    w->cut.n = n;
     for (size_t i = 0; i < n; i++) {
-        int32_t u = w->cut[i].from, v = w->cut[i].to;
+        int32_t u = cut[i].from, v = cut[i].to;
         double t = w->height[u] / (w->height[u] - w->height[v]), x[3], e[3];
         brc_sub(e, w->c->vertex[v], w->c->vertex[u]);
         brc_copy(x, w->c->vertex[u]);
@@ -204,9 +184,9 @@ static int make_vertices(struct brc_context *ctx, struct clip *w)
 
 static int32_t cut_vertex(const struct clip *w, int32_t u, int32_t v)
 {
-    struct edge key = {0, u < v ? u : v, u < v ? v : u};
-    const struct edge *hit = bsearch(&key, w->cut, w->n_cut, sizeof *w->cut, by_cell_and_ends);
-    return (int32_t)(w->n_old + (size_t)(hit - w->cut));
+    struct edge key = edge_of(0, u < v ? u : v, u < v ? v : u);
+    const struct edge *hit = bsearch(&key, w->cut.list, w->cut.n, sizeof key, brc_tuple4_compare);
+    return (int32_t)(w->n_old + (size_t)(hit - w->cut.list));
 }
 
 /* Replaces the loop of a facet by its part inside; the new loop lies at the end of the pool. */
@@ -251,9 +231,8 @@ static int find_open_edges(struct brc_context *ctx, struct clip *w)
                 continue;
             for (int32_t i = 0; i < facet->n; i++) {
                 int32_t u = loop[i], v = loop[i + 1 < facet->n ? i + 1 : 0];
-                struct edge e = {cell, k ? v : u, k ? u : v};
                 if (side_of(w, u) == SIDE_ON && side_of(w, v) == SIDE_ON)
-                    BRC_TRY(push_edge(ctx, &w->open, &w->n_open, &w->cap_open, e));
+                    BRC_TRY(push_edge(ctx, &w->open, edge_of(cell, k ? v : u, k ? u : v)));
             }
         }
     }
@@ -261,19 +240,19 @@ static int find_open_edges(struct brc_context *ctx, struct clip *w)
 }
 
 /* Drops pairs of opposite edges: there the cell has a facet on both sides. */
-static void cancel_edges(struct clip *w)
+static void cancel_edges(struct edges *open)
 {
     size_t n = 0;
-    qsort(w->open, w->n_open, sizeof *w->open, by_cell_and_ends);
-    for (size_t i = 0; i < w->n_open; i++) {
-        struct edge e = w->open[i];
-        const struct edge *last = n > 0 ? &w->open[n - 1] : NULL;
+    qsort(open->list, open->n, sizeof *open->list, brc_tuple4_compare);
+    for (size_t i = 0; i < open->n; i++) {
+        struct edge e = open->list[i];
+        const struct edge *last = n > 0 ? &open->list[n - 1] : NULL;
         if (last && last->cell == e.cell && last->from == e.to && last->to == e.from)
             n--;
         else
-            w->open[n++] = e;
+            open->list[n++] = e;
     }
-    w->n_open = n;
+    open->n = n;
 }
 
 /* Closes one cell: its n open edges, walked backwards, bound its new facets. */
@@ -306,14 +285,15 @@ static int close_cell(struct brc_context *ctx, struct clip *w, struct edge *open
 static int close_cells(struct brc_context *ctx, struct clip *w)
 {
     BRC_TRY(find_open_edges(ctx, w));
-    if (w->n_open == 0)
+    if (w->open.n == 0)
         return 0;
-    cancel_edges(w);
-    for (size_t i = 0, end; i < w->n_open; i = end) {
-        for (end = i; end < w->n_open && w->open[end].cell == w->open[i].cell; end++)
+    cancel_edges(&w->open);
+    struct edge *open = w->open.list;
+    for (size_t i = 0, end; i < w->open.n; i = end) {
+        for (end = i; end < w->open.n && open[end].cell == open[i].cell; end++)
             continue;
-        if (w->is_alive[w->open[i].cell])
-            BRC_TRY(close_cell(ctx, w, w->open + i, end - i));
+        if (w->is_alive[open[i].cell])
+            BRC_TRY(close_cell(ctx, w, open + i, end - i));
     }
     return 0;
 }
@@ -333,6 +313,9 @@ int brc_cell_complex_clip(struct brc_context *ctx, struct brc_cell_complex *c,
 {
     struct clip w = {.c = c, .plane = plane};
     int code = clip_all(ctx, &w, tolerance);
-    clip_end(&w);
+    brc_pool_free(&w.pool);
+    free(w.work);
+    free(w.cut.list);
+    free(w.open.list);
     return code;
 }

@@ -18,6 +18,7 @@ struct brc_cell_complex_facet {
     double normal[3]; /* unit, out of cell[0]; the loop turns counter-clockwise about it */
 };
 
+/* With n_cells set and else zero before the first use. */
 struct brc_cell_complex {
     size_t n_cells;
     size_t n_vertices, cap_vertices;
@@ -28,7 +29,6 @@ struct brc_cell_complex {
     int32_t *loop;
 };
 
-void brc_cell_complex_init(struct brc_cell_complex *c, size_t n_cells);
 void brc_cell_complex_free(struct brc_cell_complex *c);
 int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex *c,
                                 const double x[3]);
@@ -49,7 +49,7 @@ size_t brc_cell_complex_empty_cells(const struct brc_cell_complex *c, uint8_t *i
 int brc_cell_complex_snap_to_planes(struct brc_context *ctx, struct brc_cell_complex *c,
                                     const struct brc_convex *domain);
 /* Sorts, measures and copies into the final form; the seeds are set already in out. */
-int brc_cell_complex_finish(struct brc_context *ctx, struct brc_cell_complex *c,
+int brc_cell_complex_finish(struct brc_context *ctx, const struct brc_cell_complex *c,
                             struct brc_facets *out);
 
 #endif

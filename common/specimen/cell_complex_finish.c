@@ -3,6 +3,7 @@
 #include "common/specimen/cell_complex.h"
 
 #include "common/base/invariant.h"
+#include "common/base/tuples.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
@@ -13,28 +14,11 @@ struct incidence {
     int32_t vertex, plane;
 };
 
-/* Sort key of a facet. */
+/* Sort key of a facet: the low cell, then inner before boundary facets, then what is beyond. */
 struct key {
     int32_t cell, is_boundary, other;
     size_t facet;
 };
-
-static int by_vertex_and_plane(const void *a, const void *b)
-{
-    const struct incidence *p = a, *q = b;
-    if (p->vertex != q->vertex)
-        return p->vertex < q->vertex ? -1 : 1;
-    return p->plane < q->plane ? -1 : p->plane > q->plane;
-}
-
-/* Position in the domain's list of the plane with this id. */
-static size_t find_plane(const struct brc_convex *domain, int32_t id)
-{
-    size_t i = 0;
-    while (i < domain->n_faces && domain->plane[i].id != id)
-        i++;
-    return i;
-}
 
 /* Moves x onto n planes, one after the other, each time along the planes that came before. A plane
  * that (nearly) follows from these is met already. */
@@ -69,11 +53,11 @@ int brc_cell_complex_snap_to_planes(struct brc_context *ctx, struct brc_cell_com
     for (size_t f = 0; f < c->n_facets; f++) {
         if (c->facet[f].face < 0)
             continue;
-        int32_t plane = (int32_t)find_plane(domain, c->facet[f].face);
+        int32_t plane = (int32_t)brc_convex_face(domain, c->facet[f].face);
         for (int32_t i = 0; i < c->facet[f].n; i++)
             list[n++] = (struct incidence){c->loop[c->facet[f].first + (size_t)i], plane};
     }
-    qsort(list, n, sizeof *list, by_vertex_and_plane);
+    qsort(list, n, sizeof *list, brc_tuple2_compare);
     for (size_t i = 0, end; i < n; i = end) {
         size_t m = 1;
         for (end = i + 1; end < n && list[end].vertex == list[i].vertex; end++)
@@ -83,18 +67,6 @@ int brc_cell_complex_snap_to_planes(struct brc_context *ctx, struct brc_cell_com
     }
     free(list);
     return 0;
-}
-
-static int by_key(const void *a, const void *b)
-{
-    const struct key *p = a, *q = b;
-    if (p->cell != q->cell)
-        return p->cell < q->cell ? -1 : 1;
-    if (p->is_boundary != q->is_boundary)
-        return p->is_boundary < q->is_boundary ? -1 : 1;
-    if (p->other != q->other)
-        return p->other < q->other ? -1 : 1;
-    return p->facet < q->facet ? -1 : p->facet > q->facet;
 }
 
 /* Order of the facets: cell, then inner ones by neighbour, then boundary ones by face. */
@@ -112,10 +84,9 @@ static int sort_facets(struct brc_context *ctx, const struct brc_cell_complex *c
         keys[n++] = (struct key){facet->cell[0], is_boundary,
                                  is_boundary ? facet->face : facet->cell[1], f};
     }
-    qsort(keys, n, sizeof *keys, by_key);
+    qsort(keys, n, sizeof *keys, brc_tuple3_compare);
     for (size_t i = 1; i < n; i++)
-        if (keys[i].cell == keys[i - 1].cell && keys[i].is_boundary == keys[i - 1].is_boundary &&
-            keys[i].other == keys[i - 1].other)
+        if (brc_tuple3_compare(&keys[i], &keys[i - 1]) == 0)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "cell %d has two facets towards %s %d", keys[i].cell,
                      keys[i].is_boundary ? "boundary face" : "cell", keys[i].other);
     *n_keys = n;
@@ -125,28 +96,26 @@ static int sort_facets(struct brc_context *ctx, const struct brc_cell_complex *c
 static int allocate(struct brc_context *ctx, const struct brc_cell_complex *c, size_t n,
                     struct brc_facets *out)
 {
+    struct brc_pool *pool = &out->pool;
     size_t n_loop = 0;
     for (size_t f = 0; f < c->n_facets; f++)
         n_loop += (size_t)c->facet[f].n;
     out->n_cells = c->n_cells;
     out->n_facets = n;
-    out->volume = brc_alloc(ctx, c->n_cells, sizeof *out->volume);
-    out->centre = brc_alloc(ctx, c->n_cells, sizeof *out->centre);
-    out->cell_first = brc_alloc(ctx, c->n_cells + 1, sizeof *out->cell_first);
-    out->cell_facet = brc_alloc(ctx, 2 * n, sizeof *out->cell_facet);
-    out->cell = brc_alloc(ctx, n, sizeof *out->cell);
-    out->face = brc_alloc(ctx, n, sizeof *out->face);
-    out->is_contact = brc_alloc(ctx, n, sizeof *out->is_contact);
-    out->area = brc_alloc(ctx, n, sizeof *out->area);
-    out->centroid = brc_alloc(ctx, n, sizeof *out->centroid);
-    out->normal = brc_alloc(ctx, n, sizeof *out->normal);
-    out->first = brc_alloc(ctx, n + 1, sizeof *out->first);
-    out->loop = brc_alloc(ctx, n_loop, sizeof *out->loop);
-    out->vertex = brc_alloc(ctx, c->n_vertices, sizeof *out->vertex);
-    bool is_complete = out->volume && out->centre && out->cell_first && out->cell_facet &&
-                       out->cell && out->face && out->is_contact && out->area && out->centroid &&
-                       out->normal && out->first && out->loop && out->vertex;
-    return is_complete ? 0 : BRC_ERR_MEMORY;
+    out->volume = brc_pool_alloc(ctx, pool, c->n_cells, sizeof *out->volume);
+    out->centre = brc_pool_alloc(ctx, pool, c->n_cells, sizeof *out->centre);
+    out->cell_first = brc_pool_alloc(ctx, pool, c->n_cells + 1, sizeof *out->cell_first);
+    out->cell_facet = brc_pool_alloc(ctx, pool, 2 * n, sizeof *out->cell_facet);
+    out->cell = brc_pool_alloc(ctx, pool, n, sizeof *out->cell);
+    out->face = brc_pool_alloc(ctx, pool, n, sizeof *out->face);
+    out->is_contact = brc_pool_alloc(ctx, pool, n, sizeof *out->is_contact);
+    out->area = brc_pool_alloc(ctx, pool, n, sizeof *out->area);
+    out->centroid = brc_pool_alloc(ctx, pool, n, sizeof *out->centroid);
+    out->normal = brc_pool_alloc(ctx, pool, n, sizeof *out->normal);
+    out->first = brc_pool_alloc(ctx, pool, n + 1, sizeof *out->first);
+    out->loop = brc_pool_alloc(ctx, pool, n_loop, sizeof *out->loop);
+    out->vertex = brc_pool_alloc(ctx, pool, c->n_vertices, sizeof *out->vertex);
+    return pool->is_failed ? BRC_ERR_MEMORY : 0;
 }
 
 /* Copies the facets in order; vertices are numbered as they come. number is all -1. */
@@ -241,26 +210,30 @@ static bool is_consistent(const struct brc_facets *f)
     return is_good;
 }
 
-int brc_cell_complex_finish(struct brc_context *ctx, struct brc_cell_complex *c,
+static int finish(struct brc_context *ctx, const struct brc_cell_complex *c, struct brc_pool *pool,
+                  struct brc_facets *out)
+{
+    size_t n;
+    struct key *keys = brc_pool_alloc(ctx, pool, c->n_facets, sizeof *keys);
+    int32_t *number = brc_pool_alloc(ctx, pool, c->n_vertices, sizeof *number);
+    if (!keys || !number)
+        return BRC_ERR_MEMORY;
+    BRC_TRY(sort_facets(ctx, c, keys, &n));
+    BRC_TRY(allocate(ctx, c, n, out));
+    memset(number, 0xff, c->n_vertices * sizeof *number);
+    copy_facets(c, keys, number, out);
+    list_cells(out);
+    for (size_t i = 0; i < out->n_cells; i++)
+        measure_cell(out, i);
+    BRC_ASSERT(is_consistent(out));
+    return 0;
+}
+
+int brc_cell_complex_finish(struct brc_context *ctx, const struct brc_cell_complex *c,
                             struct brc_facets *out)
 {
-    size_t n = 0;
-    struct key *keys = brc_alloc(ctx, c->n_facets, sizeof *keys);
-    int32_t *number = brc_alloc(ctx, c->n_vertices, sizeof *number);
-    int code = keys && number ? 0 : BRC_ERR_MEMORY;
-    if (code == 0)
-        code = sort_facets(ctx, c, keys, &n);
-    if (code == 0)
-        code = allocate(ctx, c, n, out);
-    if (code == 0) {
-        memset(number, 0xff, c->n_vertices * sizeof *number);
-        copy_facets(c, keys, number, out);
-        list_cells(out);
-        for (size_t i = 0; i < out->n_cells; i++)
-            measure_cell(out, i);
-        BRC_ASSERT(is_consistent(out));
-    }
-    free(keys);
-    free(number);
+    struct brc_pool pool = {0};
+    int code = finish(ctx, c, &pool, out);
+    brc_pool_free(&pool);
     return code;
 }

@@ -195,11 +195,10 @@ static double area_over(struct brc_erosion *e, size_t facet, size_t n, size_t ro
 int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, double *area)
 {
     const struct brc_convex *core = &e->core;
-    size_t leader = (size_t)e->leader[k], facet = facet_of(e, k), i = 0;
+    size_t leader = (size_t)e->leader[k], facet = facet_of(e, k);
+    size_t i = brc_convex_face(core, (int32_t)facet_of(e, leader));
     double unused[3];
     *area = 0;
-    while (i < core->n_faces && core->plane[i].id != (int32_t)facet_of(e, leader))
-        i++;
     if (i == core->n_faces)
         return 0;
     const int32_t *loop = core->loop + core->first[i];

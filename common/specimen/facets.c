@@ -5,7 +5,7 @@
 #include "common/specimen/facets.h"
 
 #include "common/base/table.h"
-#include "common/base/grow.h"
+#include "common/geometry/edges.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
@@ -19,33 +19,17 @@ static const double convexity_limit = 1e-6;
 static const double volume_limit = 1e-12;
 static const double digits_margin = 8;
 
-struct edge {
-    int32_t low, high, direction;
-};
-
-struct edges {
-    struct edge *list;
-    size_t n, cap;
-};
-
 void brc_facets_free(struct brc_facets *f)
 {
-    free(f->volume);
-    free(f->centre);
-    free(f->seed);
-    free(f->radius);
-    free(f->cell_first);
-    free(f->cell_facet);
-    free(f->cell);
-    free(f->face);
-    free(f->is_contact);
-    free(f->area);
-    free(f->centroid);
-    free(f->normal);
-    free(f->first);
-    free(f->loop);
-    free(f->vertex);
+    brc_pool_free(&f->pool);
     memset(f, 0, sizeof *f);
+}
+
+int brc_facets_seeds(struct brc_context *ctx, struct brc_facets *f, size_t n)
+{
+    f->seed = brc_pool_alloc(ctx, &f->pool, n, sizeof *f->seed);
+    f->radius = brc_pool_alloc(ctx, &f->pool, n, sizeof *f->radius);
+    return f->seed && f->radius ? 0 : BRC_ERR_MEMORY;
 }
 
 /* |sum A n| / sum A over the facets of a cell. */
@@ -158,39 +142,15 @@ int brc_facets_cell(struct brc_context *ctx, const struct brc_facets *f, size_t 
     return 0;
 }
 
-static int by_ends(const void *a, const void *b)
+/* Each edge once in each direction, and Euler's formula, which tells one body from two that share
+ * nothing. */
+static bool is_closed(const struct brc_convex *c, const struct brc_edges *edges)
 {
-    const struct edge *p = a, *q = b;
-    if (p->low != q->low)
-        return p->low < q->low ? -1 : 1;
-    if (p->high != q->high)
-        return p->high < q->high ? -1 : 1;
-    return p->direction < q->direction ? -1 : p->direction > q->direction;
-}
-
-static int collect_edges(struct brc_context *ctx, const struct brc_convex *c, struct edges *edges)
-{
-    edges->n = 0;
-    BRC_GROW(ctx, edges->list, edges->cap, c->first[c->n_faces]);
-    for (size_t k = 0; k < c->n_faces; k++)
-        for (size_t i = c->first[k]; i < c->first[k + 1]; i++) {
-            int32_t u = c->loop[i], v = c->loop[i + 1 < c->first[k + 1] ? i + 1 : c->first[k]];
-            edges->list[edges->n++] = (struct edge){u < v ? u : v, u < v ? v : u, u < v};
-        }
-    qsort(edges->list, edges->n, sizeof *edges->list, by_ends);
-    return 0;
-}
-
-/* Each edge once in each direction, and Euler's formula. */
-static bool is_closed(const struct brc_convex *c, const struct edges *edges)
-{
-    if (edges->n % 2 != 0 || c->n_vertices + c->n_faces != edges->n / 2 + 2)
+    if (edges->n_sides != 2 * edges->n || c->n_vertices + c->n_faces != edges->n + 2)
         return false;
-    for (size_t i = 0; i < edges->n; i += 2) {
-        const struct edge *p = &edges->list[i], *q = p + 1;
-        bool is_pair = p->low == q->low && p->high == q->high && p->direction != q->direction;
-        bool is_new = i == 0 || p[-1].low != p->low || p[-1].high != p->high;
-        if (!is_pair || !is_new)
+    for (size_t i = 0; i < edges->n_sides; i += 2) {
+        const struct brc_side *p = &edges->side[i], *q = p + 1;
+        if (p->edge != q->edge || p->is_rising == q->is_rising)
             return false;
     }
     return true;
@@ -218,10 +178,10 @@ static bool has_reversed_facet(const struct brc_facets *f, size_t cell)
 }
 
 static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
-                       const double origin[3], struct brc_convex *c, struct edges *edges)
+                       const double origin[3], struct brc_convex *c, struct brc_edges *edges)
 {
     BRC_TRY(brc_facets_cell(ctx, f, cell, c));
-    BRC_TRY(collect_edges(ctx, c, edges));
+    BRC_TRY(brc_edges_find(ctx, edges, c->n_faces, c->first, c->loop));
     const char *fault = NULL;
     double closure = cell_closure(f, cell), size = cbrt(f->volume[cell]);
     if (!(f->volume[cell] > 0))
@@ -247,15 +207,14 @@ static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size
 int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
                       const double origin[3])
 {
-    struct brc_convex c;
-    struct edges edges = {NULL, 0, 0};
+    struct brc_convex c = {0};
+    struct brc_edges edges = {0};
     struct brc_facets_quality quality;
     int code = 0;
-    brc_convex_init(&c);
     for (size_t i = 0; i < f->n_cells && code == 0; i++)
         code = verify_cell(ctx, f, i, origin, &c, &edges);
     brc_convex_free(&c);
-    free(edges.list);
+    brc_edges_free(&edges);
     BRC_TRY(code);
     brc_facets_check(f, domain_volume, &quality);
     if (!(quality.volume_error <= volume_limit))

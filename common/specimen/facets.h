@@ -4,6 +4,7 @@
 #ifndef BRC_FACETS_H
 #define BRC_FACETS_H
 
+#include "common/base/pool.h"
 #include "common/geometry/convex.h"
 
 struct brc_facets {
@@ -31,9 +32,12 @@ struct brc_facets {
     double (*vertex)[3]; /* [n_vertices] m */
     double area_dropped; /* m2, total area of the facets that are not contacts */
     double precision; /* m, last digit of the vertices in the file that they stem from; 0: none */
+    struct brc_pool pool; /* owns the arrays */
 };
 
 void brc_facets_free(struct brc_facets *f);
+/* Room for the seeds of n cells; radii are 0. */
+int brc_facets_seeds(struct brc_context *ctx, struct brc_facets *f, size_t n);
 /* Largest |volume sum / domain volume - 1|, |sum A n| / sum A over a cell: the closure check. */
 struct brc_facets_quality {
     double volume_error;  /* relative */

@@ -4,13 +4,13 @@
 #include "common/specimen/cell_complex.h"
 
 #include "common/base/grow.h"
+#include "common/base/tuples.h"
+#include "common/geometry/grid.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Width of a hash cell in tolerances: few points lie near a border of their cell. */
-static const double hash_cells = 64;
 enum { MAX_PASSES = 1000 };
 
 /* An edge low-high that gets further vertices, in order from low to high. */
@@ -29,84 +29,42 @@ struct splits {
 struct merger {
     struct brc_cell_complex *c;
     double tolerance;
-    int32_t *to;          /* [n_vertices] the vertex that this one becomes */
-    int32_t *head, *next; /* hash table of the kept vertices */
-    size_t n_head;        /* power of 2 */
-    int32_t *loop;        /* work: a loop under construction */
-    size_t cap_loop;
+    int32_t *to;    /* [n_vertices] the vertex that this one becomes; -1: no facet has it */
     int32_t *claim; /* [n_vertices] the last pass that changed facets at the vertex */
-    double *t;      /* work: positions along a narrow facet */
+    int32_t *loop;  /* work: a loop under construction */
+    size_t cap_loop;
+    double *t; /* work: positions along a narrow facet */
     size_t cap_t;
     struct splits splits;
+    struct brc_pool pool; /* owns the arrays with a stated length */
 };
 
-static size_t hash_of(const struct merger *w, const int64_t key[3])
-{
-    uint64_t h = (uint64_t)key[0] * UINT64_C(0x9e3779b97f4a7c15);
-    h = (h ^ (h >> 29) ^ (uint64_t)key[1]) * UINT64_C(0xbf58476d1ce4e5b9);
-    h = (h ^ (h >> 29) ^ (uint64_t)key[2]) * UINT64_C(0x94d049bb133111eb);
-    return (size_t)(h ^ (h >> 31)) & (w->n_head - 1);
-}
-
-/* The first kept vertex within tolerance of v in one hash cell, -1 when there is none. */
-static int32_t find_in_cell(const struct merger *w, int32_t v, const int64_t key[3])
-{
-    for (int32_t u = w->head[hash_of(w, key)]; u >= 0; u = w->next[u]) {
-        double r[3];
-        brc_sub(r, w->c->vertex[u], w->c->vertex[v]);
-        if (brc_norm2(r) <= w->tolerance * w->tolerance)
-            return u;
-    }
-    return -1;
-}
-
-/* Becomes an earlier vertex, or is kept itself. Kept vertices are farther apart than the tolerance,
- * so that no chain of small steps can join distant ones. */
-static void place_vertex(struct merger *w, int32_t v)
-{
-    int64_t low[3], high[3], own[3], key[3];
-    double size = hash_cells * w->tolerance;
-    for (int k = 0; k < 3; k++) {
-        double x = w->c->vertex[v][k];
-        low[k] = (int64_t)floor((x - w->tolerance) / size);
-        own[k] = (int64_t)floor(x / size);
-        high[k] = (int64_t)floor((x + w->tolerance) / size);
-    }
-    int32_t best = -1;
-    for (key[0] = low[0]; key[0] <= high[0]; key[0]++)
-        for (key[1] = low[1]; key[1] <= high[1]; key[1]++)
-            for (key[2] = low[2]; key[2] <= high[2]; key[2]++) {
-                int32_t u = find_in_cell(w, v, key);
-                if (u >= 0 && (best < 0 || u < best))
-                    best = u;
-            }
-    w->to[v] = best >= 0 ? best : v;
-    if (best < 0) {
-        size_t h = hash_of(w, own);
-        w->next[v] = w->head[h];
-        w->head[h] = v;
-    }
-}
-
+/* A vertex becomes the first one kept within the tolerance, or is kept itself. Kept vertices are
+ * farther apart than the tolerance, so that no chain of small steps can join distant ones. Pairs
+ * come by their lower vertex: whether that is kept is known when its turn comes. */
 static int join_vertices(struct brc_context *ctx, struct merger *w)
 {
     struct brc_cell_complex *c = w->c;
-    for (w->n_head = 64; w->n_head < c->n_vertices; w->n_head *= 2)
-        continue;
-    w->to = brc_alloc(ctx, c->n_vertices, sizeof *w->to);
-    w->next = brc_alloc(ctx, c->n_vertices, sizeof *w->next);
-    w->head = brc_alloc(ctx, w->n_head, sizeof *w->head);
-    if (!w->to || !w->next || !w->head)
+    struct brc_neighbours near = {0};
+    w->to = brc_pool_alloc(ctx, &w->pool, c->n_vertices, sizeof *w->to);
+    w->claim = brc_pool_alloc(ctx, &w->pool, c->n_vertices, sizeof *w->claim);
+    if (w->pool.is_failed)
         return BRC_ERR_MEMORY;
-    memset(w->head, 0xff, w->n_head * sizeof *w->head);
     memset(w->to, 0xff, c->n_vertices * sizeof *w->to);
     for (size_t f = 0; f < c->n_facets; f++)
-        for (int32_t i = 0; i < c->facet[f].n; i++)
-            w->to[c->loop[c->facet[f].first + (size_t)i]] = 0;
-    for (size_t v = 0; v < c->n_vertices; v++)
-        if (w->to[v] == 0)
-            place_vertex(w, (int32_t)v);
-    return 0;
+        for (int32_t i = 0; i < c->facet[f].n; i++) {
+            int32_t v = c->loop[c->facet[f].first + (size_t)i];
+            w->to[v] = v;
+        }
+    int code = brc_grid_pairs(ctx, (const double(*)[3])c->vertex, NULL, c->n_vertices, w->tolerance,
+                              &near);
+    for (size_t k = 0; code == 0 && k < near.n; k++) {
+        int32_t low = near.pair[k][0], high = near.pair[k][1];
+        if (w->to[low] == low && w->to[high] == high)
+            w->to[high] = low;
+    }
+    brc_neighbours_free(&near);
+    return code;
 }
 
 /* Removes repeated neighbours (x x) and spikes (x y x) from a closed loop; returns its length. */
@@ -237,14 +195,6 @@ static int is_narrow(struct brc_context *ctx, struct merger *w, size_t f, int32_
     return 0;
 }
 
-static int by_ends(const void *a, const void *b)
-{
-    const struct split *p = a, *q = b;
-    if (p->low != q->low)
-        return p->low < q->low ? -1 : 1;
-    return p->high < q->high ? -1 : p->high > q->high;
-}
-
 /* Adds to the edge at position i of w->loop (from low t to high t when rising) the vertices of the
  * other side, positions begin..end, that lie between its ends. */
 static int split_edge(struct brc_context *ctx, struct merger *w, int32_t i, int32_t n,
@@ -305,7 +255,7 @@ static int close_narrow(struct brc_context *ctx, struct merger *w, int32_t pass,
         c->facet[f].n = 0;
     }
     if (w->splits.n > 1)
-        qsort(w->splits.list, w->splits.n, sizeof *w->splits.list, by_ends);
+        qsort(w->splits.list, w->splits.n, sizeof *w->splits.list, brc_tuple2_compare);
     return 0;
 }
 
@@ -322,7 +272,7 @@ static int apply_splits(struct brc_context *ctx, struct merger *w)
             const int32_t *loop = c->loop + c->facet[f].first;
             int32_t u = loop[i], v = loop[i + 1 < n ? i + 1 : 0];
             struct split key = {u < v ? u : v, u < v ? v : u, 0, 0};
-            const struct split *hit = bsearch(&key, s->list, s->n, sizeof key, by_ends);
+            const struct split *hit = bsearch(&key, s->list, s->n, sizeof key, brc_tuple2_compare);
             w->loop[m++] = u;
             for (int32_t k = 0; hit && k < hit->n; k++)
                 w->loop[m++] = s->vertex[hit->first + (u < v ? k : hit->n - 1 - k)];
@@ -347,9 +297,10 @@ static void add_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
 }
 
 /* Removes the vertices that have only two neighbours: they lie in the middle of an edge. */
-static int drop_middle_vertices(struct brc_context *ctx, struct brc_cell_complex *c)
+static int drop_middle_vertices(struct brc_context *ctx, struct merger *w)
 {
-    int32_t(*near)[2] = brc_alloc(ctx, c->n_vertices, sizeof *near);
+    struct brc_cell_complex *c = w->c;
+    int32_t(*near)[2] = brc_pool_alloc(ctx, &w->pool, c->n_vertices, sizeof *near);
     if (!near)
         return BRC_ERR_MEMORY;
     memset(near, 0xff, c->n_vertices * sizeof *near);
@@ -367,7 +318,6 @@ static int drop_middle_vertices(struct brc_context *ctx, struct brc_cell_complex
                 loop[n++] = loop[i];
         c->facet[f].n = n < 3 ? 0 : n;
     }
-    free(near);
     return 0;
 }
 
@@ -413,9 +363,6 @@ static int merge_all(struct brc_context *ctx, struct merger *w)
 {
     BRC_TRY(join_vertices(ctx, w));
     BRC_TRY(rename_vertices(ctx, w));
-    w->claim = brc_alloc(ctx, w->c->n_vertices, sizeof *w->claim);
-    if (!w->claim)
-        return BRC_ERR_MEMORY;
     size_t n_narrow = 1;
     for (int32_t pass = 1; n_narrow > 0; pass++) {
         if (pass > MAX_PASSES)
@@ -425,7 +372,7 @@ static int merge_all(struct brc_context *ctx, struct merger *w)
         BRC_TRY(close_narrow(ctx, w, pass, &n_narrow));
         BRC_TRY(apply_splits(ctx, w));
     }
-    BRC_TRY(drop_middle_vertices(ctx, w->c));
+    BRC_TRY(drop_middle_vertices(ctx, w));
     return compact(ctx, w->c, w->to);
 }
 
@@ -434,11 +381,8 @@ int brc_cell_complex_merge_vertices(struct brc_context *ctx, struct brc_cell_com
 {
     struct merger w = {.c = c, .tolerance = tolerance};
     int code = merge_all(ctx, &w);
-    free(w.to);
-    free(w.head);
-    free(w.next);
+    brc_pool_free(&w.pool);
     free(w.loop);
-    free(w.claim);
     free(w.t);
     free(w.splits.list);
     free(w.splits.vertex);

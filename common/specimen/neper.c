@@ -3,89 +3,15 @@
  * reading is in neper_read.c and neper_parse.c. */
 #include "common/specimen/neper.h"
 
+#include "common/geometry/edges.h"
 #include "common/geometry/vec.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { LABEL_SIZE = 64 };
-
-/* An edge between two vertices, with a facet (or a face of the domain) that it bounds. */
-struct edge {
-    int32_t low, high, face;
-};
-
-/* Edges of a body of polygons: all sides sorted, and each edge once with the first of its sides. */
-struct edges {
-    size_t n_sides, n;
-    struct edge *side;
-    size_t *first; /* [n + 1] range of an edge in side */
-};
-
-static int by_ends(const void *a, const void *b)
-{
-    const struct edge *p = a, *q = b;
-    if (p->low != q->low)
-        return p->low < q->low ? -1 : 1;
-    if (p->high != q->high)
-        return p->high < q->high ? -1 : 1;
-    return p->face < q->face ? -1 : p->face > q->face;
-}
-
-static bool is_same(const struct edge *a, const struct edge *b)
-{
-    return a->low == b->low && a->high == b->high;
-}
-
-/* first and loop as in struct brc_facets and struct brc_convex. */
-static int find_edges(struct brc_context *ctx, size_t n_faces, const size_t *first,
-                      const int32_t *loop, struct edges *e)
-{
-    size_t n = first[n_faces];
-    *e = (struct edges){.side = brc_alloc(ctx, n, sizeof *e->side),
-                        .first = brc_alloc(ctx, n + 1, sizeof *e->first)};
-    if (!e->side || !e->first)
-        return BRC_ERR_MEMORY;
-    for (size_t f = 0; f < n_faces; f++)
-        for (size_t i = first[f]; i < first[f + 1]; i++) {
-            int32_t u = loop[i], v = loop[i + 1 < first[f + 1] ? i + 1 : first[f]];
-            e->side[e->n_sides++] = (struct edge){u < v ? u : v, u < v ? v : u, (int32_t)f};
-        }
-    qsort(e->side, n, sizeof *e->side, by_ends);
-    for (size_t i = 0; i < n; i++)
-        if (i == 0 || !is_same(&e->side[i], &e->side[i - 1]))
-            e->first[e->n++] = i;
-    e->first[e->n] = n;
-    return 0;
-}
-
-static void free_edges(struct edges *e)
-{
-    free(e->side);
-    free(e->first);
-}
-
-/* Signed number of the edge from u to v, from 1 on; positive from the low end to the high one. */
-static int64_t edge_number(const struct edges *e, int32_t u, int32_t v)
-{
-    const struct edge key = {u < v ? u : v, u < v ? v : u, 0};
-    size_t low = 0, high = e->n;
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        const struct edge *at = &e->side[e->first[middle]];
-        bool is_after = at->low > key.low || (at->low == key.low && at->high > key.high);
-        if (is_after)
-            high = middle;
-        else
-            low = middle;
-    }
-    return u < v ? (int64_t)low + 1 : -(int64_t)low - 1;
-}
 
 struct writer {
     FILE *out;
     const struct brc_specimen *s;
-    struct edges edges, domain_edges;
+    struct brc_edges edges, domain_edges;
     int32_t (*pair)[2]; /* [edges.n] faces of the domain that meet in an edge, -1: inside */
 };
 
@@ -113,13 +39,14 @@ static void put_cells(const struct writer *w)
     }
     fprintf(w->out, " **edge\n %zu\n", w->edges.n);
     for (size_t i = 0; i < w->edges.n; i++) {
-        const struct edge *e = &w->edges.side[w->edges.first[i]];
+        const struct brc_side *e = &w->edges.side[w->edges.first[i]];
         fprintf(w->out, "  %zu %d %d 0\n", i + 1, e->low + 1, e->high + 1);
     }
 }
 
-/* "4 1 2 3 4" of the vertices of a polygon and of its edges. */
-static void put_loop(FILE *out, const struct edges *e, const int32_t *loop, size_t n,
+/* "4 1 2 3 4" of the vertices of a polygon and of its edges, which is negative where the polygon
+ * runs against it. */
+static void put_loop(FILE *out, const struct brc_edges *e, const int32_t *loop, size_t n,
                      bool is_signed)
 {
     fprintf(out, " %zu", n);
@@ -127,8 +54,9 @@ static void put_loop(FILE *out, const struct edges *e, const int32_t *loop, size
         fprintf(out, " %d", loop[i] + 1);
     fprintf(out, "\n    %zu", n);
     for (size_t i = 0; i < n; i++) {
-        long long number = (long long)edge_number(e, loop[i], loop[i + 1 < n ? i + 1 : 0]);
-        fprintf(out, " %lld", is_signed || number > 0 ? number : -number);
+        int32_t u = loop[i], v = loop[i + 1 < n ? i + 1 : 0];
+        int32_t number = brc_edges_number(e, u, v) + 1;
+        fprintf(out, " %d", is_signed && u > v ? -number : number);
     }
     fputc('\n', out);
 }
@@ -157,14 +85,6 @@ static void put_faces(const struct writer *w)
 
 /* ---- domain -------------------------------------------------------------------------------- */
 
-static size_t domain_face(const struct brc_convex *d, int32_t id)
-{
-    size_t i = 0;
-    while (i < d->n_faces && d->plane[i].id != id)
-        i++;
-    return i;
-}
-
 /* The two faces of the domain that meet in each edge of the cells. */
 static void find_pairs(struct writer *w)
 {
@@ -176,7 +96,7 @@ static void find_pairs(struct writer *w)
             int32_t facet = w->edges.side[k].face;
             if (f->cell[facet][1] >= 0)
                 continue;
-            int32_t own = (int32_t)domain_face(&w->s->domain, f->face[facet]);
+            int32_t own = (int32_t)brc_convex_face(&w->s->domain, f->face[facet]);
             if (n < 2 && (n == 0 || face[0] != own))
                 face[n++] = own;
         }
@@ -237,7 +157,7 @@ static void put_domain_edges(const struct writer *w)
 {
     fprintf(w->out, "  *edge\n   %zu\n", w->domain_edges.n);
     for (size_t i = 0; i < w->domain_edges.n; i++) {
-        const struct edge *e = &w->domain_edges.side[w->domain_edges.first[i]];
+        const struct brc_side *e = &w->domain_edges.side[w->domain_edges.first[i]];
         char a[LABEL_SIZE], b[LABEL_SIZE];
         size_t n = 0;
         face_label(w->s, (size_t)e[0].face, a);
@@ -290,23 +210,27 @@ static void put_all(const struct writer *w)
     fputs("***end\n", w->out);
 }
 
+static int write_all(struct brc_context *ctx, struct writer *w, struct brc_pool *pool)
+{
+    const struct brc_facets *f = &w->s->facets;
+    const struct brc_convex *d = &w->s->domain;
+    BRC_TRY(brc_edges_find(ctx, &w->edges, f->n_facets, f->first, f->loop));
+    BRC_TRY(brc_edges_find(ctx, &w->domain_edges, d->n_faces, d->first, d->loop));
+    w->pair = brc_pool_alloc(ctx, pool, w->edges.n, sizeof *w->pair);
+    if (!w->pair)
+        return BRC_ERR_MEMORY;
+    find_pairs(w);
+    put_all(w);
+    return 0;
+}
+
 int brc_neper_write(struct brc_context *ctx, FILE *out, const struct brc_specimen *s)
 {
     struct writer w = {.out = out, .s = s};
-    const struct brc_convex *d = &s->domain;
-    int code = find_edges(ctx, s->facets.n_facets, s->facets.first, s->facets.loop, &w.edges);
-    if (code == 0)
-        code = find_edges(ctx, d->n_faces, d->first, d->loop, &w.domain_edges);
-    if (code == 0)
-        w.pair = brc_alloc(ctx, w.edges.n, sizeof *w.pair);
-    if (code == 0 && !w.pair)
-        code = BRC_ERR_MEMORY;
-    if (code == 0) {
-        find_pairs(&w);
-        put_all(&w);
-    }
-    free(w.pair);
-    free_edges(&w.edges);
-    free_edges(&w.domain_edges);
+    struct brc_pool pool = {0};
+    int code = write_all(ctx, &w, &pool);
+    brc_pool_free(&pool);
+    brc_edges_free(&w.edges);
+    brc_edges_free(&w.domain_edges);
     return code;
 }

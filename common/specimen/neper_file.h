@@ -4,7 +4,7 @@
 #ifndef BRC_NEPER_FILE_H
 #define BRC_NEPER_FILE_H
 
-#include "common/base/error.h"
+#include "common/base/pool.h"
 
 enum { BRC_NEPER_TOKEN = 128 };
 
@@ -30,12 +30,12 @@ struct brc_neper_file {
     double (*vertex)[3];
     struct brc_neper_face *face;
     int32_t *loop;
-    uint8_t *is_curved; /* [n_domain] the face of the domain is said to be no plane */
-    int digits;         /* most significant digits of a vertex's coordinate */
+    uint8_t *is_curved;   /* [n_domain] the face of the domain is said to be no plane */
+    int digits;           /* most significant digits of a vertex's coordinate */
+    struct brc_pool pool; /* owns the arrays but for the text */
 };
 
-/* Reads the text into the arrays, which are allocated even after a failure as far as they go. */
+/* Reads the text into the arrays. */
 int brc_neper_parse(struct brc_neper_file *t);
-void brc_neper_file_free(struct brc_neper_file *t);
 
 #endif

@@ -99,11 +99,6 @@ static int find(struct brc_neper_file *t, const char *heading, bool is_from_star
 
 /* ---- parts of the file --------------------------------------------------------------------- */
 
-static int not_read(const struct brc_neper_file *t, const char *what)
-{
-    BRC_FAIL(t->ctx, BRC_ERR_INPUT, "%s:%d: %s", t->path, t->line, what);
-}
-
 /* The kinds of file that are read: three-dimensional, not periodic, formats 2.0 and 3. */
 static int read_kind(struct brc_neper_file *t)
 {
@@ -121,14 +116,12 @@ static int read_kind(struct brc_neper_file *t)
     BRC_TRY(find(t, "**general", false));
     BRC_TRY(whole(t, 1, 3, &dimension));
     if (dimension != 3)
-        return not_read(t,
-                        "the tessellation is two-dimensional, grains have three dimensions: make "
-                        "it with -dim 3");
+        return fail(t, "the tessellation is two-dimensional, grains have three dimensions: make "
+                       "it with -dim 3");
     BRC_TRY(skip(t, 1));
     if (strncmp(t->token, "periodic", 8) == 0)
-        return not_read(t,
-                        "the tessellation is periodic, so that its cells do not fill a body: make "
-                        "it without -periodicity");
+        return fail(t, "the tessellation is periodic, so that its cells do not fill a body: make "
+                       "it without -periodicity");
     return 0;
 }
 
@@ -141,7 +134,7 @@ static int read_cells(struct brc_neper_file *t)
             break;
     if (strcmp(t->token, "*seed") != 0)
         return 0;
-    t->seed = brc_alloc(t->ctx, t->n_cells, sizeof *t->seed);
+    t->seed = brc_pool_alloc(t->ctx, &t->pool, t->n_cells, sizeof *t->seed);
     if (!t->seed)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_cells; i++) {
@@ -156,7 +149,7 @@ static int read_vertices(struct brc_neper_file *t)
 {
     BRC_TRY(find(t, "**vertex", true));
     BRC_TRY(count(t, &t->n_vertices));
-    t->vertex = brc_alloc(t->ctx, t->n_vertices, sizeof *t->vertex);
+    t->vertex = brc_pool_alloc(t->ctx, &t->pool, t->n_vertices, sizeof *t->vertex);
     if (!t->vertex)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_vertices; i++) {
@@ -192,8 +185,8 @@ static int read_faces(struct brc_neper_file *t)
 {
     BRC_TRY(find(t, "**face", true));
     BRC_TRY(count(t, &t->n_faces));
-    t->face = brc_alloc(t->ctx, t->n_faces, sizeof *t->face);
-    t->loop = brc_alloc(t->ctx, t->size / 2 + 1, sizeof *t->loop);
+    t->face = brc_pool_alloc(t->ctx, &t->pool, t->n_faces, sizeof *t->face);
+    t->loop = brc_pool_alloc(t->ctx, &t->pool, t->size / 2 + 1, sizeof *t->loop);
     if (!t->face || !t->loop)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_faces; i++)
@@ -228,7 +221,7 @@ static int read_polyhedra(struct brc_neper_file *t)
 static int drop_empty_cells(struct brc_neper_file *t)
 {
     size_t n = 0, n_empty = 0, first = 0;
-    int32_t *number_of = brc_alloc(t->ctx, t->n_cells, sizeof *number_of);
+    int32_t *number_of = brc_pool_alloc(t->ctx, &t->pool, t->n_cells, sizeof *number_of);
     if (!number_of)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_faces; i++)
@@ -246,7 +239,6 @@ static int drop_empty_cells(struct brc_neper_file *t)
     for (size_t i = 0; i < t->n_faces; i++)
         for (int k = 0; k < 2 && t->face[i].cell[k] >= 0; k++)
             t->face[i].cell[k] = number_of[t->face[i].cell[k]];
-    free(number_of);
     t->n_cells = n;
     if (n_empty > 0)
         brc_log(t->ctx, "%s: %zu of the cells have no faces and are left out, first cell %zu",
@@ -276,7 +268,7 @@ static int read_domain(struct brc_neper_file *t)
     BRC_TRY(count(t, &t->n_domain));
     if (t->n_domain > MAX_DOMAIN_FACES)
         return fail(t, "too many faces of the domain");
-    t->is_curved = brc_alloc(t->ctx, t->n_domain, 1);
+    t->is_curved = brc_pool_alloc(t->ctx, &t->pool, t->n_domain, 1);
     if (!t->is_curved)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_domain; i++) {
@@ -319,14 +311,4 @@ int brc_neper_parse(struct brc_neper_file *t)
     BRC_TRY(drop_empty_cells(t));
     BRC_TRY(read_domain(t));
     return check_faces(t);
-}
-
-void brc_neper_file_free(struct brc_neper_file *t)
-{
-    free(t->text);
-    free(t->seed);
-    free(t->vertex);
-    free(t->face);
-    free(t->loop);
-    free(t->is_curved);
 }

@@ -36,18 +36,13 @@ static void come_near(struct tess *t, const double middle[3])
 
 static void scale(struct tess *t, double metres)
 {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    double largest = 0;
+    double low[3], high[3], largest = 0;
     for (size_t i = 0; t->file.seed && i < t->file.n_cells; i++)
         for (int k = 0; k < 4; k++)
             t->file.seed[i][k] *= metres;
-    for (size_t i = 0; i < t->file.n_vertices; i++) {
+    for (size_t i = 0; i < t->file.n_vertices; i++)
         brc_scale(t->file.vertex[i], t->file.vertex[i], metres);
-        for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], t->file.vertex[i][k]);
-            high[k] = fmax(high[k], t->file.vertex[i][k]);
-        }
-    }
+    brc_box_of(low, high, t->file.vertex, t->file.n_vertices);
     for (int k = 0; k < 3; k++)
         largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])) / metres);
     brc_sub(high, high, low);
@@ -79,11 +74,13 @@ static void measure_face(const struct tess *t, const struct brc_neper_face *f, d
 /* Means of the faces' middles, which lie inside of convex cells, and the cells' order in space. */
 static int place_cells(struct tess *t)
 {
-    int32_t *n = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *n);
-    t->centre = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *t->centre);
-    t->order = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *t->order);
-    int code = n && t->centre && t->order ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < t->file.n_faces; i++) {
+    size_t n_cells = t->file.n_cells;
+    int32_t *n = brc_pool_alloc(t->file.ctx, &t->file.pool, n_cells, sizeof *n);
+    t->centre = brc_pool_alloc(t->file.ctx, &t->file.pool, n_cells, sizeof *t->centre);
+    t->order = brc_pool_alloc(t->file.ctx, &t->file.pool, n_cells, sizeof *t->order);
+    if (t->file.pool.is_failed)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->file.n_faces; i++) {
         double area[3], middle[3];
         measure_face(t, &t->file.face[i], area, middle);
         for (int k = 0; k < 2 && t->file.face[i].cell[k] >= 0; k++) {
@@ -91,19 +88,16 @@ static int place_cells(struct tess *t)
             n[t->file.face[i].cell[k]]++;
         }
     }
-    for (size_t i = 0; code == 0 && i < t->file.n_cells; i++)
+    for (size_t i = 0; i < n_cells; i++)
         brc_scale(t->centre[i], t->centre[i], 1.0 / n[i]);
-    if (code == 0)
-        code = brc_hilbert_order(t->file.ctx, t->centre, t->file.n_cells, t->order);
-    free(n);
-    return code;
+    return brc_hilbert_order(t->file.ctx, t->centre, n_cells, t->order);
 }
 
 /* A face of the domain that lies in the plane of another one is that one. */
 static int join_domain_faces(struct tess *t, const struct brc_plane *plane,
                              const struct brc_convex *domain)
 {
-    int32_t *to = brc_alloc(t->file.ctx, t->file.n_domain, sizeof *to);
+    int32_t *to = brc_pool_alloc(t->file.ctx, &t->file.pool, t->file.n_domain, sizeof *to);
     if (!to)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->file.n_domain; i++) {
@@ -119,17 +113,18 @@ static int join_domain_faces(struct tess *t, const struct brc_plane *plane,
     for (size_t i = 0; i < t->file.n_faces; i++)
         if (t->file.face[i].domain >= 0)
             t->file.face[i].domain = to[t->file.face[i].domain];
-    free(to);
     return 0;
 }
 
 /* The planes of the domain by the outward areas of the faces that lie on them. */
 static int make_domain(struct tess *t, struct brc_convex *domain)
 {
-    struct brc_plane *plane = brc_alloc(t->file.ctx, t->file.n_domain, sizeof *plane);
-    double(*sum)[3] = brc_alloc(t->file.ctx, t->file.n_domain, sizeof *sum);
-    int code = plane && sum ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < t->file.n_faces; i++) {
+    struct brc_plane *plane =
+        brc_pool_alloc(t->file.ctx, &t->file.pool, t->file.n_domain, sizeof *plane);
+    double(*sum)[3] = brc_pool_alloc(t->file.ctx, &t->file.pool, t->file.n_domain, sizeof *sum);
+    if (t->file.pool.is_failed)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->file.n_faces; i++) {
         const struct brc_neper_face *f = &t->file.face[i];
         double area[3], middle[3], out[3];
         if (f->domain < 0)
@@ -139,23 +134,17 @@ static int make_domain(struct tess *t, struct brc_convex *domain)
         brc_axpy(plane[f->domain].n, brc_dot(area, out) < 0 ? -1 : 1, area);
         brc_axpy(sum[f->domain], brc_norm(area), middle);
     }
-    for (size_t i = 0; code == 0 && i < t->file.n_domain; i++) {
+    for (size_t i = 0; i < t->file.n_domain; i++) {
         double area = brc_normalise(plane[i].n, plane[i].n);
-        plane[i].d = area > 0 ? brc_dot(plane[i].n, sum[i]) / area : 0;
-        plane[i].id = (int32_t)i;
         if (area == 0)
-            code = brc_error_set(t->file.ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                                 "%s: face %zu of the domain has no faces of cells", t->file.path,
-                                 i + 1);
+            BRC_FAIL(t->file.ctx, BRC_ERR_INPUT, "%s: face %zu of the domain has no faces of cells",
+                     t->file.path, i + 1);
+        plane[i].d = brc_dot(plane[i].n, sum[i]) / area;
+        plane[i].id = (int32_t)i;
     }
-    if (code == 0)
-        code = brc_convex_enclosed(t->file.ctx, domain, plane, t->file.n_domain,
-                                   fmax(plane_digits, digits_margin * t->precision / t->extent));
-    if (code == 0)
-        code = join_domain_faces(t, plane, domain);
-    free(plane);
-    free(sum);
-    return code;
+    BRC_TRY(brc_convex_enclosed(t->file.ctx, domain, plane, t->file.n_domain,
+                                fmax(plane_digits, digits_margin * t->precision / t->extent)));
+    return join_domain_faces(t, plane, domain);
 }
 
 /* Largest distance of a face's vertex from a plane through a point. */
@@ -242,18 +231,18 @@ static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const
 
 static int fill_complex(struct tess *t, struct brc_cell_complex *c, const struct brc_convex *domain)
 {
-    int32_t *number_of = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *number_of);
-    int code = number_of ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < t->file.n_cells; i++)
+    int32_t *number_of =
+        brc_pool_alloc(t->file.ctx, &t->file.pool, t->file.n_cells, sizeof *number_of);
+    if (!number_of)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < t->file.n_cells; i++)
         number_of[t->order[i]] = (int32_t)i;
-    for (size_t v = 0; code == 0 && v < t->file.n_vertices; v++)
-        code = brc_cell_complex_add_vertex(t->file.ctx, c, t->file.vertex[v]);
-    for (size_t i = 0; code == 0 && i < t->file.n_faces; i++)
-        code = add_facet(t, c, i, number_of, domain);
-    free(number_of);
-    if (code == 0)
-        code = brc_cell_complex_merge_vertices(t->file.ctx, c, merge_length * t->extent);
-    return code == 0 ? brc_cell_complex_snap_to_planes(t->file.ctx, c, domain) : code;
+    for (size_t v = 0; v < t->file.n_vertices; v++)
+        BRC_TRY(brc_cell_complex_add_vertex(t->file.ctx, c, t->file.vertex[v]));
+    for (size_t i = 0; i < t->file.n_faces; i++)
+        BRC_TRY(add_facet(t, c, i, number_of, domain));
+    BRC_TRY(brc_cell_complex_merge_vertices(t->file.ctx, c, merge_length * t->extent));
+    return brc_cell_complex_snap_to_planes(t->file.ctx, c, domain);
 }
 
 /* A seed on the other side of a face gives way to the centre of its cell: cells are measured from
@@ -280,10 +269,7 @@ static int make_facets(struct tess *t, struct brc_cell_complex *c, bool has_sphe
     if (t->file.seed && !has_spheres)
         keep_seeds_inside(t);
     out->precision = t->precision;
-    out->seed = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *out->seed);
-    out->radius = brc_alloc(t->file.ctx, t->file.n_cells, sizeof *out->radius);
-    if (!out->seed || !out->radius)
-        return BRC_ERR_MEMORY;
+    BRC_TRY(brc_facets_seeds(t->file.ctx, out, t->file.n_cells));
     for (size_t i = 0; i < t->file.n_cells; i++) {
         size_t own = t->order[i];
         brc_copy(out->seed[i], t->file.seed ? t->file.seed[own] : t->centre[own]);
@@ -294,43 +280,35 @@ static int make_facets(struct tess *t, struct brc_cell_complex *c, bool has_sphe
 }
 
 static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_convex *domain,
-                    struct brc_facets *out)
+                    struct brc_cell_complex *c, struct brc_facets *out)
 {
-    struct brc_cell_complex c;
+    const struct brc_input in = {
+        .key = "specimen.tess", .path = t->file.path, .largest = BRC_INPUT_LARGEST};
     double volume, centroid[3], inertia[3][3];
+    BRC_TRY(brc_input_read(t->file.ctx, &in, &t->file.text, &t->file.size));
     BRC_TRY(brc_neper_parse(&t->file));
     scale(t, metres);
     BRC_TRY(place_cells(t));
     BRC_TRY(make_domain(t, domain));
     brc_convex_mass(domain, &volume, centroid, inertia);
-    brc_cell_complex_init(&c, t->file.n_cells);
-    int code = fill_complex(t, &c, domain);
-    if (code == 0)
-        code = make_facets(t, &c, has_spheres, volume, out);
-    brc_cell_complex_free(&c);
-    if (code == 0 && brc_norm(t->origin) > 0) {
+    c->n_cells = t->file.n_cells;
+    BRC_TRY(fill_complex(t, c, domain));
+    BRC_TRY(make_facets(t, c, has_spheres, volume, out));
+    if (brc_norm(t->origin) > 0) {
         brc_convex_shift(domain, t->origin);
         brc_facets_shift(out, t->origin);
     }
-    return code;
-}
-
-static int read_text(struct tess *t)
-{
-    const struct brc_input in = {
-        .key = "specimen.tess", .path = t->file.path, .largest = BRC_INPUT_LARGEST};
-    return brc_input_read(t->file.ctx, &in, &t->file.text, &t->file.size);
+    return 0;
 }
 
 int brc_neper_read(struct brc_context *ctx, const char *path, double metres, bool has_spheres,
                    struct brc_convex *domain, struct brc_facets *out)
 {
     struct tess t = {.file = {.ctx = ctx, .path = path}};
-    int code = read_text(&t);
-    if (code == 0)
-        code = make_all(&t, metres, has_spheres, domain, out);
-    brc_neper_file_free(&t.file);
-    free(t.centre);
-    free(t.order);
+    struct brc_cell_complex c = {0};
+    int code = make_all(&t, metres, has_spheres, domain, &c, out);
+    brc_cell_complex_free(&c);
+    free(t.file.text);
+    brc_pool_free(&t.file.pool);
     return code;
 }

@@ -10,7 +10,6 @@
 #include "common/geometry/vec.h"
 
 #include <gsl/gsl_rng.h>
-#include <stdlib.h>
 
 enum {
     MAX_TRIES = 10000,      /* random places tried for one sphere */
@@ -37,21 +36,11 @@ struct packing {
     double *present; /* at this stage of growth */
     double mean_radius, skin;
     struct brc_neighbours near;
-    int32_t (*near_wall)[2]; /* sphere and plane of the domain */
-    size_t n_near_wall, cap_near_wall;
-    double contact; /* mean contact force of the last step */
+    struct brc_neighbours near_wall; /* sphere and plane of the domain */
+    double contact;                  /* mean contact force of the last step */
     struct brc_work work;
+    struct brc_pool pool; /* owns the arrays but for x and radius, which are the result */
 };
-
-static void packing_free(struct packing *p)
-{
-    free(p->v);
-    free(p->f);
-    free(p->listed);
-    free(p->present);
-    brc_neighbours_free(&p->near);
-    free(p->near_wall);
-}
 
 /* Mean of d^3 over uniform d: (max^4 - min^4) / (4 (max - min)). */
 static double mean_cube(double low, double high)
@@ -113,13 +102,8 @@ static void random_point(gsl_rng *rng, const double low[3], const double high[3]
 static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
                   const struct brc_specimen_params *s)
 {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (size_t i = 0; i < p->domain->n_vertices; i++) {
-        for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], p->domain->vertex[i][k]);
-            high[k] = fmax(high[k], p->domain->vertex[i][k]);
-        }
-    }
+    double low[3], high[3];
+    brc_box_of(low, high, p->domain->vertex, p->domain->n_vertices);
     for (size_t i = 0; i < p->n; i++) {
         /* one diameter from each of n equal classes: the solid fraction hits its mark */
         double rank = ((double)i + gsl_rng_uniform(rng)) / (double)p->n;
@@ -140,23 +124,11 @@ static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
 
 static int list_walls(struct brc_context *ctx, struct packing *p)
 {
-    p->n_near_wall = 0;
-    for (size_t i = 0; i < p->n; i++) {
-        for (size_t k = 0; k < p->domain->n_faces; k++) {
-            if (wall_distance(&p->domain->plane[k], p->x[i]) > p->radius[i] + p->skin)
-                continue;
-            if (p->n_near_wall == p->cap_near_wall) {
-                size_t cap = 2 * p->cap_near_wall + 64;
-                int32_t(*list)[2] = brc_realloc(ctx, p->near_wall, cap, sizeof *list);
-                if (!list)
-                    return BRC_ERR_MEMORY;
-                p->near_wall = list;
-                p->cap_near_wall = cap;
-            }
-            p->near_wall[p->n_near_wall][0] = (int32_t)i;
-            p->near_wall[p->n_near_wall++][1] = (int32_t)k;
-        }
-    }
+    p->near_wall.n = 0;
+    for (size_t i = 0; i < p->n; i++)
+        for (size_t k = 0; k < p->domain->n_faces; k++)
+            if (wall_distance(&p->domain->plane[k], p->x[i]) <= p->radius[i] + p->skin)
+                BRC_TRY(brc_neighbours_add(ctx, &p->near_wall, i, k));
     return 0;
 }
 
@@ -196,9 +168,9 @@ static void repel(struct packing *p)
         sum += reach - distance;
         touching++;
     }
-    for (size_t k = 0; k < p->n_near_wall; k++) {
-        int32_t i = p->near_wall[k][0];
-        const struct brc_plane *plane = &p->domain->plane[p->near_wall[k][1]];
+    for (size_t k = 0; k < p->near_wall.n; k++) {
+        int32_t i = p->near_wall.pair[k][0];
+        const struct brc_plane *plane = &p->domain->plane[p->near_wall.pair[k][1]];
         double gap = wall_distance(plane, p->x[i]) - p->present[i];
         if (gap < 0)
             brc_axpy(p->f[i], gap, plane->n);
@@ -289,34 +261,38 @@ static int grow(struct brc_context *ctx, struct packing *p)
     return check_packing(ctx, p, ratio);
 }
 
+static int pack(struct brc_context *ctx, struct packing *p, const struct brc_specimen_params *s,
+                gsl_rng *rng)
+{
+    p->v = brc_pool_alloc(ctx, &p->pool, p->n, sizeof *p->v);
+    p->f = brc_pool_alloc(ctx, &p->pool, p->n, sizeof *p->f);
+    p->listed = brc_pool_alloc(ctx, &p->pool, p->n, sizeof *p->listed);
+    p->present = brc_pool_alloc(ctx, &p->pool, p->n, sizeof *p->present);
+    if (p->pool.is_failed || !rng)
+        return BRC_ERR_MEMORY;
+    gsl_rng_set(rng, (unsigned long)s->seed);
+    BRC_TRY(insert(ctx, p, rng, s));
+    brc_work_begin(&p->work, ctx, "packing");
+    int code = grow(ctx, p);
+    brc_work_end(&p->work);
+    return code;
+}
+
 int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *s,
                       const struct brc_convex *domain, double domain_volume, struct brc_seeds *out)
 {
     struct packing p = {.domain = domain};
     BRC_TRY(choose_count(ctx, s, domain_volume, &p.n));
+    BRC_TRY(brc_seeds_alloc(ctx, out, p.n, true));
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    p.x = out->x;
+    p.radius = out->radius;
     p.mean_radius = 0.25 * (s->diameter_min + s->diameter_max);
     p.skin = SKIN * p.mean_radius;
-    *out = (struct brc_seeds){.n = p.n};
-    p.x = out->x = brc_alloc(ctx, p.n, sizeof *out->x);
-    p.radius = out->radius = brc_alloc(ctx, p.n, sizeof *out->radius);
-    p.v = brc_alloc(ctx, p.n, sizeof *p.v);
-    p.f = brc_alloc(ctx, p.n, sizeof *p.f);
-    p.listed = brc_alloc(ctx, p.n, sizeof *p.listed);
-    p.present = brc_alloc(ctx, p.n, sizeof *p.present);
-    int code = rng && p.x && p.radius && p.v && p.f && p.listed && p.present ? 0 : BRC_ERR_MEMORY;
-    if (code == 0) {
-        gsl_rng_set(rng, (unsigned long)s->seed);
-        code = insert(ctx, &p, rng, s);
-    }
-    brc_work_begin(&p.work, ctx, "packing");
-    if (code == 0)
-        code = grow(ctx, &p);
-    brc_work_end(&p.work);
-    if (rng)
-        gsl_rng_free(rng);
-    packing_free(&p);
-    if (code != 0)
-        brc_seeds_free(out);
+    int code = pack(ctx, &p, s, rng);
+    gsl_rng_free(rng); /* takes NULL */
+    brc_pool_free(&p.pool);
+    brc_neighbours_free(&p.near);
+    brc_neighbours_free(&p.near_wall);
     return code;
 }

@@ -73,12 +73,10 @@ static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct
 {
     struct header h;
     if (fread(&h, sizeof h, 1, file) != 1 || memcmp(h.magic, MAGIC, sizeof MAGIC) != 0 ||
-        h.version != CACHE_VERSION || h.key != key || h.n == 0 || h.n > 10000000)
+        h.version != CACHE_VERSION || h.key != key || h.n == 0 || h.n > BRC_MAX_GRAINS)
         return false;
-    *out = (struct brc_seeds){.n = h.n};
-    out->x = brc_alloc(ctx, out->n, sizeof *out->x);
-    out->radius = brc_alloc(ctx, out->n, sizeof *out->radius);
-    if (out->x && out->radius && fread(out->x, sizeof *out->x, out->n, file) == out->n &&
+    if (brc_seeds_alloc(ctx, out, h.n, true) == 0 &&
+        fread(out->x, sizeof *out->x, out->n, file) == out->n &&
         fread(out->radius, sizeof *out->radius, out->n, file) == out->n &&
         content_hash(out) == h.hash)
         return true;

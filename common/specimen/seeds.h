@@ -4,15 +4,20 @@
 #ifndef BRC_SEEDS_H
 #define BRC_SEEDS_H
 
+#include "common/base/pool.h"
 #include "common/geometry/convex.h"
 #include "common/specimen/specimen_params.h"
 
+/* Zero before the first use. */
 struct brc_seeds {
     size_t n;
     double (*x)[3]; /* m */
     double *radius; /* m; NULL for plain Voronoi */
+    struct brc_pool pool;
 };
 
+/* Room for n seeds, with radii where has_radii says so. */
+int brc_seeds_alloc(struct brc_context *ctx, struct brc_seeds *s, size_t n, bool has_radii);
 void brc_seeds_free(struct brc_seeds *s);
 /* One point per cubic cell of the box, uniform in a centred box of jitter cells (gt12 Fig 4). */
 int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
@@ -24,7 +29,7 @@ int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *
 /* Uniform diameters, inserted at half radius, grown and relaxed without cohesion (vgcm 2.5). */
 int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *p,
                       const struct brc_convex *domain, double domain_volume, struct brc_seeds *out);
-/* Renumbers along a space-filling (Hilbert or Morton) curve; ties keep their order. */
+/* Renumbers along a Hilbert curve; ties keep their order. */
 int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s);
 
 #endif

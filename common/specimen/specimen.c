@@ -11,7 +11,6 @@
 #include "common/specimen/tess.h"
 #include "common/geometry/vec.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define BRC_OWNER struct brc_specimen_params
@@ -47,7 +46,7 @@ static int number_of_sides(const struct brc_specimen_params *p)
 /* Prism of n sides with the area of the circle, or for gt12's mesh inscribed in it; the normal of
  * side k is at 90 deg + k 360/n. */
 static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_params *p,
-                         struct brc_convex *domain)
+                         struct brc_pool *pool, struct brc_convex *domain)
 {
     int n = number_of_sides(p);
     if (n % 2 != 0 || n < 4)
@@ -55,7 +54,7 @@ static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_para
                  "specimen.sides = %d must be 4 or more and even, so that two sides face the "
                  "platens; 0 chooses the number",
                  n);
-    struct brc_plane *plane = brc_alloc(ctx, (size_t)n + 2, sizeof *plane);
+    struct brc_plane *plane = brc_pool_alloc(ctx, pool, (size_t)n + 2, sizeof *plane);
     if (!plane)
         return BRC_ERR_MEMORY;
     bool is_inscribed = p->grains == BRC_GRAINS_MESH;
@@ -71,76 +70,79 @@ static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_para
     brc_set(plane[2].n, 0, 1, 0);
     brc_set(plane[2 + n / 2].n, 0, -1, 0);
     const double centre[3] = {0, 0, p->height / 2};
-    int code =
-        brc_convex_from_planes(ctx, domain, plane, (size_t)n + 2, centre, p->diameter + p->height);
-    free(plane);
-    return code;
+    return brc_convex_from_planes(ctx, domain, plane, (size_t)n + 2, centre,
+                                  p->diameter + p->height);
 }
 
 /* One plane a row: nx ny nz d. */
-static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_params *p,
-                           struct brc_convex *domain)
+static int enclose(struct brc_context *ctx, const char *path, const struct brc_numbers *rows,
+                   struct brc_pool *pool, struct brc_convex *domain)
 {
-    struct brc_numbers rows;
-    BRC_TRY(brc_numbers_read(ctx, "specimen.planes", p->planes, "nx ny nz d", 4, 4, &rows));
-    struct brc_plane *plane = brc_alloc(ctx, rows.n, sizeof *plane);
-    int code = plane ? 0 : BRC_ERR_MEMORY;
-    if (code == 0 && rows.n > MAX_FILE_PLANES)
-        code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                             "specimen.planes: '%s' has %zu planes, at most %d are allowed",
-                             p->planes, rows.n, MAX_FILE_PLANES);
-    for (size_t i = 0; code == 0 && i < rows.n; i++) {
-        const double *row = rows.value + 4 * i;
+    struct brc_plane *plane = brc_pool_alloc(ctx, pool, rows->n, sizeof *plane);
+    if (!plane)
+        return BRC_ERR_MEMORY;
+    if (rows->n > MAX_FILE_PLANES)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.planes: '%s' has %zu planes, at most %d are allowed",
+                 path, rows->n, MAX_FILE_PLANES);
+    for (size_t i = 0; i < rows->n; i++) {
+        const double *row = rows->value + 4 * i;
         plane[i] = (struct brc_plane){{row[0], row[1], row[2]}, 0, (int32_t)i};
         plane[i].d = row[3] / brc_normalise(plane[i].n, plane[i].n);
         if (!isfinite(plane[i].d))
-            code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                                 "specimen.planes: %s:%d: the normal nx ny nz must not be zero",
-                                 p->planes, rows.line[i]);
+            BRC_FAIL(ctx, BRC_ERR_INPUT,
+                     "specimen.planes: %s:%d: the normal nx ny nz must not be zero", path,
+                     rows->line[i]);
     }
-    if (code == 0)
-        code = brc_convex_enclosed(ctx, domain, plane, rows.n, plane_digits);
-    free(plane);
-    brc_numbers_free(&rows);
-    if (code == 0 && domain->n_faces == 0)
+    BRC_TRY(brc_convex_enclosed(ctx, domain, plane, rows->n, plane_digits));
+    if (domain->n_faces == 0)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "specimen.planes: the planes of '%s' enclose nothing",
-                 p->planes);
+                 path);
+    return 0;
+}
+
+static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_params *p,
+                           struct brc_pool *pool, struct brc_convex *domain)
+{
+    struct brc_numbers rows;
+    BRC_TRY(brc_numbers_read(ctx, "specimen.planes", p->planes, "nx ny nz d", 4, 4, &rows));
+    int code = enclose(ctx, p->planes, &rows, pool, domain);
+    brc_numbers_free(&rows);
     return code;
 }
 
 static int make_domain(struct brc_context *ctx, const struct brc_specimen_params *p,
-                       struct brc_convex *domain)
+                       struct brc_pool *pool, struct brc_convex *domain)
 {
     const double low[3] = {0, 0, 0};
     switch ((enum brc_shape)p->shape) {
     case BRC_SHAPE_BOX:
         return brc_convex_box(ctx, domain, low, p->size);
     case BRC_SHAPE_CYLINDER:
-        return make_cylinder(ctx, p, domain);
+        return make_cylinder(ctx, p, pool, domain);
     case BRC_SHAPE_POLYHEDRON:
-        return make_polyhedron(ctx, p, domain);
+        return make_polyhedron(ctx, p, pool, domain);
     }
     return BRC_ERR_INTERNAL;
 }
 
-static int make_seeds(struct brc_context *ctx, struct brc_specimen *s, struct brc_seeds *seeds)
+static int make_seeds(struct brc_context *ctx, const struct brc_specimen *s,
+                      struct brc_seeds *seeds)
 {
     const struct brc_specimen_params *p = &s->params;
-    if (p->grains == BRC_GRAINS_GRID) {
-        if (p->shape != BRC_SHAPE_BOX)
-            BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.grains: grid needs specimen.shape: box");
-        BRC_TRY(brc_seeds_grid(ctx, p, seeds));
-        return brc_seeds_sort(ctx, seeds);
-    }
-    if (p->grains == BRC_GRAINS_POINTS) {
-        BRC_TRY(brc_seeds_points(ctx, p, s->domain_volume, seeds));
-        return brc_seeds_sort(ctx, seeds);
-    }
-    if (brc_packing_cache_load(ctx, p, &s->domain, seeds))
+    bool is_packing = p->grains == BRC_GRAINS_PACKING;
+    if (p->grains == BRC_GRAINS_GRID && p->shape != BRC_SHAPE_BOX)
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.grains: grid needs specimen.shape: box");
+    if (is_packing && brc_packing_cache_load(ctx, p, &s->domain, seeds))
         return 0;
-    BRC_TRY(brc_seeds_packing(ctx, p, &s->domain, s->domain_volume, seeds));
+    if (is_packing)
+        BRC_TRY(brc_seeds_packing(ctx, p, &s->domain, s->domain_volume, seeds));
+    else if (p->grains == BRC_GRAINS_GRID)
+        BRC_TRY(brc_seeds_grid(ctx, p, seeds));
+    else
+        BRC_TRY(brc_seeds_points(ctx, p, s->domain_volume, seeds));
     BRC_TRY(brc_seeds_sort(ctx, seeds));
-    brc_packing_cache_save(ctx, p, &s->domain, seeds);
+    if (is_packing)
+        brc_packing_cache_save(ctx, p, &s->domain, seeds);
     return 0;
 }
 
@@ -224,14 +226,10 @@ static int read_tess(struct brc_context *ctx, struct brc_specimen *s)
 /* Extents of a domain that comes from a file; the others are within their keys' ranges. */
 static int check_domain(struct brc_context *ctx, const struct brc_specimen *s)
 {
-    const struct brc_convex *d = &s->domain;
+    double low[3], high[3];
+    brc_box_of(low, high, s->domain.vertex, s->domain.n_vertices);
     for (int k = 0; k < 3; k++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (size_t v = 0; v < d->n_vertices; v++) {
-            low = fmin(low, d->vertex[v][k]);
-            high = fmax(high, d->vertex[v][k]);
-        }
-        double length = high - low;
+        double length = high[k] - low[k];
         if (!(length >= least_length && length <= largest_length))
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "the specimen measures %g m along %c; allowed are %g m to %g m: lengths in "
@@ -241,11 +239,11 @@ static int check_domain(struct brc_context *ctx, const struct brc_specimen *s)
     return 0;
 }
 
-static int make_or_read(struct brc_context *ctx, struct brc_specimen *s)
+static int make_or_read(struct brc_context *ctx, struct brc_pool *pool, struct brc_specimen *s)
 {
     double centroid[3], inertia[3][3];
     bool is_read = s->params.grains == BRC_GRAINS_TESS;
-    BRC_TRY(is_read ? read_tess(ctx, s) : make_domain(ctx, &s->params, &s->domain));
+    BRC_TRY(is_read ? read_tess(ctx, s) : make_domain(ctx, &s->params, pool, &s->domain));
     BRC_TRY(check_domain(ctx, s));
     brc_convex_mass(&s->domain, &s->domain_volume, centroid, inertia);
     return is_read ? 0 : tessellate(ctx, s);
@@ -254,9 +252,10 @@ static int make_or_read(struct brc_context *ctx, struct brc_specimen *s)
 int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_params *params,
                         struct brc_specimen *out)
 {
+    struct brc_pool pool = {0};
     *out = (struct brc_specimen){.params = *params};
-    brc_convex_init(&out->domain);
-    int code = make_or_read(ctx, out);
+    int code = make_or_read(ctx, &pool, out);
+    brc_pool_free(&pool);
     if (code == 0)
         measure(out);
     else
@@ -292,13 +291,5 @@ void brc_specimen_free(struct brc_specimen *s)
 
 void brc_specimen_extent(const struct brc_specimen *s, double low[3], double high[3])
 {
-    const struct brc_facets *f = &s->facets;
-    brc_set(low, HUGE_VAL, HUGE_VAL, HUGE_VAL);
-    brc_set(high, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL);
-    for (size_t i = 0; i < f->n_vertices; i++) {
-        for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], f->vertex[i][k]);
-            high[k] = fmax(high[k], f->vertex[i][k]);
-        }
-    }
+    brc_box_of(low, high, s->facets.vertex, s->facets.n_vertices);
 }

@@ -8,7 +8,6 @@
 #include "common/specimen/tess_cgal.h"
 #include "common/geometry/vec.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Lengths in units of the mean cell size. Vertices nearer than merge_length are one, vertices
@@ -42,10 +41,7 @@ static int check_seeds(struct brc_context *ctx, double (*seed)[3], const double 
 static int copy_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                       struct brc_facets *out)
 {
-    out->seed = brc_alloc(ctx, n, sizeof *out->seed);
-    out->radius = brc_alloc(ctx, n, sizeof *out->radius);
-    if (!out->seed || !out->radius)
-        return BRC_ERR_MEMORY;
+    BRC_TRY(brc_facets_seeds(ctx, out, n));
     memcpy(out->seed, seed, n * sizeof *out->seed);
     if (radius)
         memcpy(out->radius, radius, n * sizeof *out->radius);
@@ -71,15 +67,15 @@ struct work {
     const double *radius;
     size_t n;
     const struct brc_convex *domain;
-    double origin[3]; /* 0 where the domain is near */
-    double (*own_seed)[3];
-    struct brc_convex own_domain;
+    double origin[3];              /* 0 where the domain is near */
+    struct brc_convex near_domain; /* the domain, moved to the origin */
     double volume, centroid[3];
     struct brc_cell_complex complex;
     int32_t *hider;    /* as of brc_cgal_cells */
     uint8_t *is_empty; /* no cell inside the domain */
     struct brc_work progress;
-    bool is_incomplete; /* some seed has no cell: no other merge length helps */
+    bool is_incomplete;   /* some seed has no cell: no other merge length helps */
+    struct brc_pool pool; /* owns the arrays */
 };
 
 /* Names the first seed without a cell and, where known, the seed that takes its place. */
@@ -112,7 +108,7 @@ static int name_missing(struct brc_context *ctx, const struct work *w)
 static int make_cells(struct brc_context *ctx, struct work *w, double merge_length)
 {
     brc_cell_complex_free(&w->complex);
-    brc_cell_complex_init(&w->complex, w->n);
+    w->complex.n_cells = w->n;
     BRC_TRY(brc_cgal_cells(ctx, w->seed, w->radius, w->n, w->centroid,
                            brc_convex_reach(w->domain, w->centroid), w->hider, &w->complex));
     brc_work_update(&w->progress, cells_part);
@@ -161,21 +157,19 @@ static int come_near(struct brc_context *ctx, struct work *w)
     if (brc_norm(w->origin) == 0)
         return 0;
     brc_scale(back, w->origin, -1);
-    w->own_seed = brc_alloc(ctx, w->n, sizeof *w->own_seed);
-    struct brc_plane *plane = brc_alloc(ctx, w->domain->n_faces, sizeof *plane);
-    int code = w->own_seed && plane ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < w->n; i++)
-        brc_add(w->own_seed[i], w->seed[i], back);
-    if (code == 0) {
-        memcpy(plane, w->domain->plane, w->domain->n_faces * sizeof *plane);
-        brc_planes_shift(plane, w->domain->n_faces, back);
-        code =
-            brc_convex_from_planes(ctx, &w->own_domain, plane, w->domain->n_faces, zero, 4 * reach);
-    }
-    free(plane);
-    w->seed = w->own_seed;
-    w->domain = &w->own_domain;
-    return code;
+    double(*seed)[3] = brc_pool_alloc(ctx, &w->pool, w->n, sizeof *seed);
+    struct brc_plane *plane = brc_pool_alloc(ctx, &w->pool, w->domain->n_faces, sizeof *plane);
+    if (w->pool.is_failed)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < w->n; i++)
+        brc_add(seed[i], w->seed[i], back);
+    memcpy(plane, w->domain->plane, w->domain->n_faces * sizeof *plane);
+    brc_planes_shift(plane, w->domain->n_faces, back);
+    BRC_TRY(
+        brc_convex_from_planes(ctx, &w->near_domain, plane, w->domain->n_faces, zero, 4 * reach));
+    w->seed = seed;
+    w->domain = &w->near_domain;
+    return 0;
 }
 
 static int prepare(struct brc_context *ctx, struct work *w)
@@ -185,9 +179,25 @@ static int prepare(struct brc_context *ctx, struct work *w)
     BRC_TRY(check_seeds(ctx, w->seed, w->radius, w->n, w->domain));
     BRC_TRY(come_near(ctx, w));
     brc_convex_mass(w->domain, &w->volume, w->centroid, inertia);
-    w->hider = brc_alloc(ctx, w->n, sizeof *w->hider);
-    w->is_empty = brc_alloc(ctx, w->n, sizeof *w->is_empty);
-    return w->hider && w->is_empty ? 0 : BRC_ERR_MEMORY;
+    w->hider = brc_pool_alloc(ctx, &w->pool, w->n, sizeof *w->hider);
+    w->is_empty = brc_pool_alloc(ctx, &w->pool, w->n, sizeof *w->is_empty);
+    return w->pool.is_failed ? BRC_ERR_MEMORY : 0;
+}
+
+static int tessellate(struct brc_context *ctx, struct work *w, double min_area_ratio,
+                      uint8_t *hidden, struct brc_facets *out)
+{
+    BRC_TRY(prepare(ctx, w));
+    if (hidden) {
+        BRC_TRY(make_cells(ctx, w, merge_lengths[0] * cbrt(w->volume / (double)w->n)));
+        memcpy(hidden, w->is_empty, w->n);
+        return 0;
+    }
+    BRC_TRY(try_facets(ctx, w, out));
+    brc_facets_mark_contacts(out, min_area_ratio);
+    if (brc_norm(w->origin) > 0)
+        brc_facets_shift(out, w->origin);
+    return 0;
 }
 
 int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
@@ -197,23 +207,11 @@ int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *
     struct work w = {.seed = seed, .radius = radius, .n = n, .domain = domain};
     memset(out, 0, sizeof *out);
     brc_work_begin(&w.progress, ctx, "tessellating");
-    int code = prepare(ctx, &w);
-    if (code == 0 && hidden)
-        code = make_cells(ctx, &w, merge_lengths[0] * cbrt(w.volume / (double)n));
-    if (code == 0 && hidden)
-        memcpy(hidden, w.is_empty, n);
-    if (code == 0 && !hidden)
-        code = try_facets(ctx, &w, out);
-    if (code == 0 && !hidden)
-        brc_facets_mark_contacts(out, min_area_ratio);
-    if (code == 0 && !hidden && w.own_seed)
-        brc_facets_shift(out, w.origin);
+    int code = tessellate(ctx, &w, min_area_ratio, hidden, out);
     brc_work_end(&w.progress);
     brc_cell_complex_free(&w.complex);
-    brc_convex_free(&w.own_domain);
-    free(w.own_seed);
-    free(w.hider);
-    free(w.is_empty);
+    brc_convex_free(&w.near_domain);
+    brc_pool_free(&w.pool);
     if (code != 0)
         brc_facets_free(out);
     return code;

@@ -14,7 +14,6 @@ extern "C" {
 #include <CGAL/Delaunay_mesh_size_criteria_2.h>
 #include <CGAL/Delaunay_mesh_vertex_base_2.h>
 #include <CGAL/Delaunay_mesher_2.h>
-#include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/MP_Float.h>
 #include <CGAL/Regular_triangulation_3.h>
@@ -24,7 +23,6 @@ extern "C" {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <map>
 #include <new>
@@ -38,20 +36,18 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Weighted = Kernel::Weighted_point_3;
 
-using Delaunay = CGAL::Delaunay_triangulation_3<
-    Kernel, CGAL::Triangulation_data_structure_3<
-                CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel>,
-                CGAL::Triangulation_cell_base_with_info_3<
-                    int32_t, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>>;
-using Regular = CGAL::Regular_triangulation_3<
-    Kernel,
-    CGAL::Triangulation_data_structure_3<
-        CGAL::Triangulation_vertex_base_with_info_3<
-            int32_t, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>,
-        CGAL::Triangulation_cell_base_with_info_3<
-            int32_t, Kernel,
-            CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
-                                                    CGAL::Discard_hidden_points>>>>;
+using Vertex_base =
+    CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel,
+                                                CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
+using Cell_base = CGAL::Triangulation_cell_base_with_info_3<
+    int32_t, Kernel,
+    CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
+                                            CGAL::Discard_hidden_points>>;
+/* Plain Voronoi cells are the dual of the regular triangulation with equal weights, too. */
+using Regular =
+    CGAL::Regular_triangulation_3<Kernel,
+                                  CGAL::Triangulation_data_structure_3<Vertex_base, Cell_base>>;
+using Vertex = Regular::Vertex_handle;
 
 using Mesh = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel, CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_base_2<Kernel>,
@@ -101,36 +97,6 @@ class Area_criteria
  * -8 to -1. */
 constexpr int32_t n_guards = 8;
 
-double weight_of(const Point &)
-{
-    return 0;
-}
-
-double weight_of(const Weighted &p)
-{
-    return p.weight();
-}
-
-Point make_point(const Delaunay &, double x, double y, double z, double)
-{
-    return Point(x, y, z);
-}
-
-Weighted make_point(const Regular &, double x, double y, double z, double w)
-{
-    return Weighted(Point(x, y, z), w);
-}
-
-int32_t nearest(const Delaunay &t, const Point &p)
-{
-    return t.nearest_vertex(p)->info();
-}
-
-int32_t nearest(const Regular &t, const Weighted &p)
-{
-    return t.nearest_power_vertex(p.point())->info();
-}
-
 /* Cramer's rule: numerators and determinant of d x = b. */
 template <class Number>
 void solve(const Number d[3][3], const Number b[3], Number x[3], Number &det)
@@ -172,7 +138,7 @@ void power_centre(const double p[4][3], const double w[4], Number x[3], Number &
     shape = product;
 }
 
-template <class Vertex> void cell_centre(const std::array<Vertex, 4> &corner, double x[3])
+void cell_centre(const std::array<Vertex, 4> &corner, double x[3])
 {
     /* below this sine, long double may lose more than the last digits of a double */
     constexpr long double flat = 1e-3L;
@@ -182,7 +148,7 @@ template <class Vertex> void cell_centre(const std::array<Vertex, 4> &corner, do
         p[i][0] = q.x();
         p[i][1] = q.y();
         p[i][2] = q.z();
-        w[i] = weight_of(q);
+        w[i] = q.weight();
     }
     long double c[3], det, product;
     power_centre<long double>(p, w, c, det, product);
@@ -199,23 +165,22 @@ template <class Vertex> void cell_centre(const std::array<Vertex, 4> &corner, do
 
 /* CGAL's own order of cells and edges follows addresses in memory. Sorted by the seeds' numbers,
  * equal seeds give equal bits. */
-template <class Triangulation> struct Sorted {
-    using Vertex = typename Triangulation::Vertex_handle;
+struct Sorted {
     struct Cell {
         std::array<Vertex, 4> corner;
-        typename Triangulation::Cell_handle handle;
+        Regular::Cell_handle handle;
     };
     struct Edge {
         int32_t low, high; /* high < 0: a guard */
-        typename Triangulation::Edge edge;
+        Regular::Edge edge;
     };
     std::vector<Cell> cells;
     std::vector<Edge> edges;
 
-    explicit Sorted(const Triangulation &t);
+    explicit Sorted(const Regular &t);
 };
 
-template <class Triangulation> Sorted<Triangulation>::Sorted(const Triangulation &t)
+Sorted::Sorted(const Regular &t)
 {
     auto by_info = [](Vertex a, Vertex b) { return a->info() < b->info(); };
     cells.reserve(t.number_of_finite_cells());
@@ -230,7 +195,7 @@ template <class Triangulation> Sorted<Triangulation>::Sorted(const Triangulation
     });
     edges.reserve(t.number_of_finite_edges());
     for (auto e = t.finite_edges_begin(); e != t.finite_edges_end(); ++e) {
-        typename Triangulation::Edge edge = *e;
+        Regular::Edge edge = *e;
         int32_t a = edge.first->vertex(edge.second)->info();
         int32_t b = edge.first->vertex(edge.third)->info();
         if (b >= 0 && (a < 0 || a > b)) {
@@ -246,9 +211,7 @@ template <class Triangulation> Sorted<Triangulation>::Sorted(const Triangulation
 }
 
 /* The facet across the edge between two seeds: the cells around the edge, in turn. */
-template <class Triangulation>
-int add_facet(brc_context *ctx, const Triangulation &t,
-              const typename Sorted<Triangulation>::Edge &e, double (*seed)[3],
+int add_facet(brc_context *ctx, const Regular &t, const Sorted::Edge &e, double (*seed)[3],
               std::vector<int32_t> &loop, brc_cell_complex *out)
 {
     loop.clear();
@@ -274,10 +237,9 @@ int add_facet(brc_context *ctx, const Triangulation &t,
     return brc_cell_complex_add_facet(ctx, out, &facet, loop.data());
 }
 
-template <class Triangulation>
-int copy_cells(brc_context *ctx, const Triangulation &t, double (*seed)[3], brc_cell_complex *out)
+int copy_cells(brc_context *ctx, const Regular &t, double (*seed)[3], brc_cell_complex *out)
 {
-    Sorted<Triangulation> sorted(t);
+    Sorted sorted(t);
     int32_t n = 0;
     for (const auto &cell : sorted.cells) {
         double x[3];
@@ -291,31 +253,28 @@ int copy_cells(brc_context *ctx, const Triangulation &t, double (*seed)[3], brc_
     return 0;
 }
 
-template <class Triangulation>
 int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                const double centre[3], double half_width, int32_t *hider, brc_cell_complex *out)
 {
-    using Vertex = typename Triangulation::Point;
-    Triangulation t;
+    Regular t;
+    auto weight = [radius](size_t i) { return radius ? radius[i] * radius[i] : 0; };
     double low = INFINITY, high = 0;
     for (size_t i = 0; i < n; i++) {
-        double w = radius ? radius[i] * radius[i] : 0;
-        low = std::fmin(low, w);
-        high = std::fmax(high, w);
+        low = std::fmin(low, weight(i));
+        high = std::fmax(high, weight(i));
     }
     /* far enough that inside the region every seed is nearer, whatever the weights */
     double far = 8 * std::sqrt(half_width * half_width + high - low);
-    std::vector<std::pair<Vertex, int32_t>> points;
+    std::vector<std::pair<Weighted, int32_t>> points;
     points.reserve(n + n_guards);
-    for (int32_t k = 0; k < n_guards; k++)
-        points.emplace_back(make_point(t, centre[0] + (k & 1 ? far : -far),
-                                       centre[1] + (k & 2 ? far : -far),
-                                       centre[2] + (k & 4 ? far : -far), low),
-                            k - n_guards);
+    for (int32_t k = 0; k < n_guards; k++) {
+        Point guard(centre[0] + (k & 1 ? far : -far), centre[1] + (k & 2 ? far : -far),
+                    centre[2] + (k & 4 ? far : -far));
+        points.emplace_back(Weighted(guard, low), k - n_guards);
+    }
     for (size_t i = 0; i < n; i++)
-        points.emplace_back(
-            make_point(t, seed[i][0], seed[i][1], seed[i][2], radius ? radius[i] * radius[i] : 0),
-            static_cast<int32_t>(i));
+        points.emplace_back(Weighted(Point(seed[i][0], seed[i][1], seed[i][2]), weight(i)),
+                            static_cast<int32_t>(i));
     t.insert(points.begin(), points.end());
     for (size_t i = 0; i < n; i++)
         hider[i] = 0;
@@ -324,7 +283,7 @@ int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t
             hider[v->info()] = -1;
     for (size_t i = 0; i < n; i++)
         if (hider[i] == 0)
-            hider[i] = nearest(t, points[i + n_guards].first);
+            hider[i] = t.nearest_power_vertex(points[i + n_guards].first.point())->info();
     return copy_cells(ctx, t, seed, out);
 }
 
@@ -367,15 +326,20 @@ Sorted_mesh::Sorted_mesh(const Mesh &mesh)
         numbers.emplace(face.second.handle, n++);
 }
 
-int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_cgal_mesh *out)
+/* An array of the pool with the type of the pointer that it is for. */
+template <class Element> int allocate(brc_context *ctx, brc_pool *pool, Element *&array, size_t n)
+{
+    array = static_cast<Element *>(brc_pool_alloc(ctx, pool, n, sizeof *array));
+    return array ? 0 : BRC_ERR_MEMORY;
+}
+
+int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_pool *pool, brc_cgal_mesh *out)
 {
     Sorted_mesh sorted(mesh);
     size_t n = sorted.faces.size(), n_vertices = sorted.vertices.size();
-    out->vertex = static_cast<double(*)[2]>(brc_alloc(ctx, n_vertices, sizeof *out->vertex));
-    out->triangle = static_cast<int32_t(*)[3]>(brc_alloc(ctx, n, sizeof *out->triangle));
-    out->neighbour = static_cast<int32_t(*)[3]>(brc_alloc(ctx, n, sizeof *out->neighbour));
-    if (!out->vertex || !out->triangle || !out->neighbour)
-        return BRC_ERR_MEMORY;
+    BRC_TRY(allocate(ctx, pool, out->vertex, n_vertices));
+    BRC_TRY(allocate(ctx, pool, out->triangle, n));
+    BRC_TRY(allocate(ctx, pool, out->neighbour, n));
     for (const auto &[place, number] : sorted.vertices) {
         out->vertex[number][0] = place.first;
         out->vertex[number][1] = place.second;
@@ -393,7 +357,8 @@ int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_cgal_mesh *out)
     return 0;
 }
 
-int make_mesh(brc_context *ctx, double (*corner)[2], size_t n, double max_area, brc_cgal_mesh *out)
+int make_mesh(brc_context *ctx, double (*corner)[2], size_t n, double max_area, brc_pool *pool,
+              brc_cgal_mesh *out)
 {
     Mesh mesh;
     std::vector<Mesh::Vertex_handle> ring;
@@ -403,7 +368,7 @@ int make_mesh(brc_context *ctx, double (*corner)[2], size_t n, double max_area, 
         mesh.insert_constraint(ring[i], ring[(i + 1) % n]);
     CGAL::Delaunay_mesher_2<Mesh, Area_criteria> mesher(mesh, Area_criteria(max_area));
     mesher.refine_mesh();
-    return copy_mesh(ctx, mesh, out);
+    return copy_mesh(ctx, mesh, pool, out);
 }
 
 /* Runs work and turns exceptions into error codes. */
@@ -427,22 +392,13 @@ extern "C" int brc_cgal_cells(brc_context *ctx, double (*seed)[3], const double 
                               brc_cell_complex *out)
 {
     return guarded(ctx, "tessellation", [&] {
-        return radius ? make_cells<Regular>(ctx, seed, radius, n, centre, half_width, hider, out)
-                      : make_cells<Delaunay>(ctx, seed, radius, n, centre, half_width, hider, out);
+        return make_cells(ctx, seed, radius, n, centre, half_width, hider, out);
     });
 }
 
 extern "C" int brc_cgal_triangulate(brc_context *ctx, double (*corner)[2], size_t n,
-                                    double max_area, brc_cgal_mesh *out)
+                                    double max_area, brc_pool *pool, brc_cgal_mesh *out)
 {
     return guarded(ctx, "triangle mesher",
-                   [&] { return make_mesh(ctx, corner, n, max_area, out); });
-}
-
-extern "C" void brc_cgal_mesh_free(brc_cgal_mesh *m)
-{
-    std::free(m->vertex);
-    std::free(m->triangle);
-    std::free(m->neighbour);
-    *m = brc_cgal_mesh();
+                   [&] { return make_mesh(ctx, corner, n, max_area, pool, out); });
 }

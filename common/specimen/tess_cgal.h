@@ -20,9 +20,9 @@ int brc_cgal_cells(struct brc_context *ctx, double (*seed)[3], const double *rad
                    const double centre[3], double half_width, int32_t *hider,
                    struct brc_cell_complex *out);
 
-/* Delaunay mesh of a convex polygon with triangles of at most max_area. */
+/* Delaunay mesh of a convex polygon with triangles of at most max_area [m2]; its arrays are the
+ * pool's. */
 int brc_cgal_triangulate(struct brc_context *ctx, double (*corner)[2], size_t n, double max_area,
-                         struct brc_cgal_mesh *out);
-void brc_cgal_mesh_free(struct brc_cgal_mesh *m);
+                         struct brc_pool *pool, struct brc_cgal_mesh *out);
 
 #endif

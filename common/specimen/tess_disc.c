@@ -5,7 +5,6 @@
 #include "common/specimen/tess_cgal.h"
 #include "common/geometry/vec.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { FACE_BOTTOM, FACE_TOP, FACE_SIDE };
@@ -15,9 +14,10 @@ struct disc {
     int n_sides;
     struct brc_cgal_mesh mesh;
     struct brc_cell_complex complex;
-    double (*centre)[3]; /* [n_triangles] */
-    size_t *order;       /* [n_triangles] triangle of a cell */
-    int32_t *cell;       /* [n_triangles] cell of a triangle */
+    double (*centre)[3];  /* [n_triangles] */
+    size_t *order;        /* [n_triangles] triangle of a cell */
+    int32_t *cell;        /* [n_triangles] cell of a triangle */
+    struct brc_pool pool; /* owns the arrays, those of the mesh included */
 };
 
 /* Direction of side k's normal, or of corner k - 1/2. */
@@ -28,26 +28,24 @@ static double side_angle(const struct disc *d, double k)
 
 static int make_mesh(struct brc_context *ctx, struct disc *d, double max_area)
 {
-    double(*corner)[2] = brc_alloc(ctx, (size_t)d->n_sides, sizeof *corner);
+    double(*corner)[2] = brc_pool_alloc(ctx, &d->pool, (size_t)d->n_sides, sizeof *corner);
     if (!corner)
         return BRC_ERR_MEMORY;
     for (int k = 0; k < d->n_sides; k++) {
         corner[k][0] = d->radius * cos(side_angle(d, k - 0.5));
         corner[k][1] = d->radius * sin(side_angle(d, k - 0.5));
     }
-    int code = brc_cgal_triangulate(ctx, corner, (size_t)d->n_sides, max_area, &d->mesh);
-    free(corner);
-    return code;
+    return brc_cgal_triangulate(ctx, corner, (size_t)d->n_sides, max_area, &d->pool, &d->mesh);
 }
 
 /* Numbers the cells along a space-filling curve. */
 static int number_cells(struct brc_context *ctx, struct disc *d)
 {
     const struct brc_cgal_mesh *m = &d->mesh;
-    d->centre = brc_alloc(ctx, m->n_triangles, sizeof *d->centre);
-    d->order = brc_alloc(ctx, m->n_triangles, sizeof *d->order);
-    d->cell = brc_alloc(ctx, m->n_triangles, sizeof *d->cell);
-    if (!d->centre || !d->order || !d->cell)
+    d->centre = brc_pool_alloc(ctx, &d->pool, m->n_triangles, sizeof *d->centre);
+    d->order = brc_pool_alloc(ctx, &d->pool, m->n_triangles, sizeof *d->order);
+    d->cell = brc_pool_alloc(ctx, &d->pool, m->n_triangles, sizeof *d->cell);
+    if (d->pool.is_failed)
         return BRC_ERR_MEMORY;
     for (size_t t = 0; t < m->n_triangles; t++) {
         const int32_t *v = m->triangle[t];
@@ -124,14 +122,10 @@ static int make_disc(struct brc_context *ctx, struct disc *d, double max_area,
                  d->n_sides, d->radius, d->thickness, max_area);
     BRC_TRY(make_mesh(ctx, d, max_area));
     BRC_TRY(number_cells(ctx, d));
-    brc_cell_complex_init(&d->complex, d->mesh.n_triangles);
+    size_t n = d->complex.n_cells = d->mesh.n_triangles;
     BRC_TRY(add_vertices(ctx, d));
     BRC_TRY(add_prisms(ctx, d));
-    size_t n = d->mesh.n_triangles;
-    out->seed = brc_alloc(ctx, n, sizeof *out->seed);
-    out->radius = brc_alloc(ctx, n, sizeof *out->radius);
-    if (!out->seed || !out->radius)
-        return BRC_ERR_MEMORY;
+    BRC_TRY(brc_facets_seeds(ctx, out, n));
     for (size_t i = 0; i < n; i++)
         brc_copy(out->seed[i], d->centre[d->order[i]]);
     BRC_TRY(brc_cell_complex_finish(ctx, &d->complex, out));
@@ -145,13 +139,9 @@ int brc_tess_disc(struct brc_context *ctx, double radius, double thickness, int 
 {
     struct disc d = {.radius = radius, .thickness = thickness, .n_sides = n_sides};
     memset(out, 0, sizeof *out);
-    brc_cell_complex_init(&d.complex, 0);
     int code = make_disc(ctx, &d, max_area, out);
     brc_cell_complex_free(&d.complex);
-    brc_cgal_mesh_free(&d.mesh);
-    free(d.centre);
-    free(d.order);
-    free(d.cell);
+    brc_pool_free(&d.pool);
     if (code != 0)
         brc_facets_free(out);
     return code;

@@ -272,7 +272,7 @@ static void dodecahedra(const char *evaluation, const char *name)
     dodecahedra_read(&d);
     dodecahedra_planes(&d, planes);
     for (size_t i = 0; i < 512; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         dodecahedra_place(&d, i, planes, d.radius, placed);
         must(&f->ctx, brc_convex_from_planes(&f->ctx, &cell[i], placed, 12, d.x[i], 2));
     }

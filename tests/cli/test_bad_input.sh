@@ -136,7 +136,7 @@ refuse 3 "no sphere fits" "enlarge the specimen or lower specimen.diameter_min" 
     --set specimen.diameter_min="9 cm" --set specimen.diameter_max="9 cm"
 sed 's/grains: grid.*/grains: points, points: seeds.txt}/' case.yaml >points.yaml
 printf '# x y z\n0.01 0.01 0.01\n0.02 0.01 0.01\n0.01 0.01 0.01 # again\n' >seeds.txt
-refuse 3 points.yaml:4 "seeds.txt:4: the seed coincides with that of line 2 at (0.01, 0.01, 0.01)" \
+refuse 3 points.yaml:4 "seeds.txt:4: the seed at (0.01, 0.01, 0.01) m is 0 m from that of line 2" \
     "remove or move one of them" -- run points.yaml -o $results --force
 : >seeds.txt
 refuse 3 points.yaml:4 "'seeds.txt' holds no row" -- run points.yaml -o $results --force

@@ -108,7 +108,7 @@ static void tip_over_face(struct fixture *f, double height, const char *settings
     struct brc_convex cell[2];
     char all[128];
     for (int i = 0; i < 2; i++)
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
     fixture_box(f, &cell[0], (double[3]){-BOX / 2, 0, 0}, (double[3]){BOX, BOX, BOX});
     fixture_octahedron(f, &cell[1], (double[3]){TIP - sqrt(3) * R - R + height, 0, 0}, TIP);
     fixture_loose(f, cell, NULL, 2);
@@ -190,7 +190,7 @@ static void mass_ratio(void **state)
         struct brc_convex cell[2];
         double size = cbrt(1e-4 * BOX * BOX * BOX * 3 / 4), tip = size - sqrt(3) * 1e-4 + 1e-4;
         for (int k = 0; k < 2; k++)
-            brc_convex_init(&cell[k]);
+            cell[k] = (struct brc_convex){0};
         fixture_box(f, &cell[0], (double[3]){-BOX / 2, 0, 0}, (double[3]){BOX, BOX, BOX});
         fixture_octahedron(f, &cell[1], (double[3]){tip + 1e-6, 0, 0}, size);
         fixture_loose(f, cell, NULL, 2);

@@ -10,7 +10,7 @@ void gas_build(struct fixture *f, struct brc_convex *cell, const struct brc_mode
     double radius[GAS_N];
     f->random = 77;
     for (int i = 0; i < GAS_N; i++) {
-        brc_convex_init(&cells[i]);
+        cells[i] = (struct brc_convex){0};
         fixture_box(f, &cells[i],
                     (double[3]){0.0075 + 0.015 * (i % 3), 0.0075 + 0.015 * (i / 3 % 2),
                                 0.0075 + 0.015 * (i / 6)},

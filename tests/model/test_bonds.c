@@ -97,14 +97,13 @@ static double eroded_face(struct fixture *f, size_t cell, int32_t facet)
 {
     const struct brc_facets *s = &f->specimen.facets;
     struct brc_plane planes[64];
-    struct brc_convex core;
+    struct brc_convex core = {0};
     size_t n = s->cell_first[cell + 1] - s->cell_first[cell];
     double area = 0, unused[3];
     assert_true(n <= 64);
     brc_facets_cell_planes(s, cell, planes);
     for (size_t i = 0; i < n; i++)
         planes[i].d -= R;
-    brc_convex_init(&core);
     CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &core, planes, n, s->centre[cell], 10 * H));
     for (size_t i = 0; i < core.n_faces; i++)
         if (core.plane[i].id == facet)

@@ -77,9 +77,9 @@ static void begin_duel(struct fixture *f, struct duel *d, const char *rule)
 {
     struct brc_convex cell[2], core;
     char settings[256];
-    brc_convex_init(&core);
+    core = (struct brc_convex){0};
     for (int i = 0; i < 2; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         random_body(f, (double[3]){i * 0.02, 0, 0}, RADIUS, &cell[i], &core);
         twin_core_from(&d->start[i], &core);
         twin_core_from(&d->now[i], &core);
@@ -205,7 +205,7 @@ static void kept_features_of_a_gas(void **state)
     gas_build(f, cell, brc_registry_find("polyhedra"),
               "radius: 1 mm; kn: 1e5 N/m; kt: 1e5 N/m; gn: 2000 1/s; features: strict",
               "dt: 2e-5 s");
-    brc_convex_init(&core);
+    core = (struct brc_convex){0};
     for (size_t i = 0; i < GAS_N; i++) {
         for (size_t k = 0; k < cell[i].n_faces; k++)
             cell[i].plane[k].d -= 1e-3;
@@ -249,9 +249,9 @@ static void dodecahedra_are_counted_right(void **state)
     struct twin_core *twin = test_calloc(512, sizeof *twin);
     dodecahedra_read(d);
     assert_int_equal(dodecahedra_planes(d, planes), 12);
-    brc_convex_init(&core);
+    core = (struct brc_convex){0};
     for (size_t i = 0; i < 512; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         dodecahedra_place(d, i, planes, d->radius, placed);
         CHECK_OK(&f->ctx, brc_convex_from_planes(&f->ctx, &cell[i], placed, 12, d->x[i], 2));
         dodecahedra_place(d, i, planes, 0, placed);

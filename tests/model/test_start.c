@@ -110,7 +110,7 @@ static void stack(struct fixture *f, const struct brc_model *model, double gap, 
     const double radius[3] = {0.005, 0.005, 0.005}, edges[3] = {0.01, 0.01, 0.01};
     for (int i = 0; i < 3; i++) {
         const double centre[3] = {0, 0, (0.01 + gap) * i};
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         fixture_box(f, &cell[i], centre, edges);
     }
     fixture_loose(f, cell, radius, 3);
@@ -172,7 +172,7 @@ static void gravity_needs_a_stiffness(void **state)
     struct brc_convex cell[2];
     const double radius[2] = {0.005, 0.005}, edges[3] = {0.01, 0.01, 0.01};
     for (int i = 0; i < 2; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         fixture_box(f, &cell[i], (const double[]){0, 0, 1.0 * i}, edges);
     }
     fixture_loose(f, cell, radius, 2);

@@ -31,7 +31,7 @@ static void build_polyhedra(struct fixture *f, const char *settings, double dt)
     struct brc_convex cell[2];
     char run[64], all[256];
     for (int i = 0; i < 2; i++)
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
     fixture_box(f, &cell[0], (double[3]){-BOX / 2, 0, 0}, (double[3]){BOX, BOX, BOX});
     fixture_octahedron(f, &cell[1], (double[3]){rounded_tip() + GAP, 0, 0}, TIP);
     fixture_loose(f, cell, NULL, 2);
@@ -49,7 +49,7 @@ static void build_spheres(struct fixture *f, const char *settings, double dt)
     struct brc_convex cell[2];
     char run[64];
     for (int i = 0; i < 2; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         fixture_box(f, &cell[i], (double[3]){i == 0 ? 0 : 1e-2 + GAP, 0, 0}, edges);
     }
     fixture_loose(f, cell, radius, 2);
@@ -240,7 +240,7 @@ static void slip_to_roll(void **state)
     const double radius[2] = {r, big};
     struct brc_convex cell[2];
     for (int i = 0; i < 2; i++)
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
     fixture_box(f, &cell[0], (double[3]){0, 0, 0}, (double[3]){8e-3, 8e-3, 8e-3});
     fixture_box(f, &cell[1], (double[3]){0, 0, -big - r}, (double[3]){80, 80, 80});
     fixture_loose(f, cell, radius, 2);
@@ -316,7 +316,7 @@ static void build_block_on_slab(struct fixture *f)
 {
     struct brc_convex cell[2];
     for (int i = 0; i < 2; i++)
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
     fixture_box(f, &cell[0], (double[3]){0, 0, -5e-3}, (double[3]){0.06, 0.06, 1e-2});
     fixture_box(f, &cell[1], (double[3]){0, 0, 5e-3}, (double[3]){1e-2, 1e-2, 1e-2});
     fixture_loose(f, cell, NULL, 2);
@@ -414,7 +414,7 @@ static void build_cubes(struct fixture *f, const char *settings, const char *run
     struct brc_convex cell[2];
     char all[256];
     for (int i = 0; i < 2; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         fixture_box(f, &cell[i], (double[3]){i * (1e-2 + GAP), 0, 0},
                     (double[3]){1e-2, 1e-2, 1e-2});
     }

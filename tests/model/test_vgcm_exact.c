@@ -329,7 +329,7 @@ static void make_strangers(struct fixture *f, double distance)
     double at[3] = {0, 0, 0};
     struct brc_convex cell[2];
     for (int i = 0; i < 2; i++) {
-        brc_convex_init(&cell[i]);
+        cell[i] = (struct brc_convex){0};
         at[0] = i * distance;
         fixture_box(f, &cell[i], at, edges);
     }

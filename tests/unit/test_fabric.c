@@ -17,7 +17,7 @@ static void make_facets(double part, bool has_radii, struct brc_facets *out)
 {
     double seed[N_SEEDS][3], radius[N_SEEDS];
     const double low[3] = {0, 0, 0}, high[3] = {SIDE * edge, SIDE * edge, SIDE * edge};
-    struct brc_convex domain;
+    struct brc_convex domain = {0};
     uint64_t random = 7;
     for (int i = 0; i < N_SEEDS; i++) {
         const int place[3] = {i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)};
@@ -30,7 +30,6 @@ static void make_facets(double part, bool has_radii, struct brc_facets *out)
                 radius[i] = edge * (0.45 + 0.1 * r);
         }
     }
-    brc_convex_init(&domain);
     CHECK_OK(&ctx, brc_convex_box(&ctx, &domain, low, high));
     CHECK_OK(&ctx, brc_tess_laguerre(&ctx, seed, has_radii ? radius : NULL, N_SEEDS, &domain, 1e-4,
                                      NULL, out));

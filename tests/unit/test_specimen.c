@@ -427,7 +427,8 @@ static void test_bounds(void **state)
     }
     write_file(planes, "1 0 0 1\n-1 0 0 0\n0 1 0 1\n0 -1 0 0\n0 0 1 1\n0 0 -1 0\n");
     write_file(points, "0.2 0.5 0.5\n0.7 0.5 0.5\n\n0.20000001 0.5 0.5\n");
-    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY, "lines 1 and 4");
+    CHECK_FAILS(&ctx, brc_specimen_create(&ctx, &p, &s), BRC_ERR_GEOMETRY,
+                "points:4: the seed at (0.2, 0.5, 0.5) m is 1e-08 m from that of line 1");
     write_file(points, "0.2 0.5 0.5\n0.7 0.5 0.5\n\n0.202 0.5 0.5\n");
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
     brc_specimen_free(&s);

@@ -41,7 +41,7 @@ static void make_domain(struct pack *p, double edge, int sides)
 {
     struct brc_plane planes[130];
     double low[3] = {0, 0, 0}, high[3] = {edge, edge, edge}, inertia[3][3], centre[3];
-    brc_convex_init(&p->domain);
+    p->domain = (struct brc_convex){0};
     if (sides == 0) {
         CHECK_OK(&ctx, brc_convex_box(&ctx, &p->domain, low, high));
     } else {
@@ -240,10 +240,9 @@ static void test_settle(void **state)
 {
     (void)state;
     struct pack p;
-    struct brc_cell_complex c;
+    struct brc_cell_complex c = {.n_cells = 1};
     memset(&p, 0, sizeof p);
     make_domain(&p, 0.05, 30);
-    brc_cell_complex_init(&c, 1);
     for (size_t v = 0; v < p.domain.n_vertices; v++) {
         double x[3];
         for (int k = 0; k < 3; k++)
@@ -341,10 +340,9 @@ static void test_cell_and_damage(void **state)
 {
     (void)state;
     struct pack p;
-    struct brc_convex c;
+    struct brc_convex c = {0};
     make_pack(&p, 4, 1, 0);
     check_partition(&p, true, 1e-12);
-    brc_convex_init(&c);
     for (size_t i = 0; i < p.n; i++) {
         double volume, centroid[3], inertia[3][3];
         CHECK_OK(&ctx, brc_facets_cell(&ctx, &p.facets, i, &c));
