@@ -46,7 +46,8 @@ static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
     return code;
 }
 
-/* Radius of a cell's sphere; that of equal volume for a plain Voronoi cell. */
+/* Radius of a cell's sphere; that of equal volume for a plain Voronoi cell, as vgcm does where a
+ * specimen has no spheres. */
 static double sphere_radius(const struct brc_facets *f, int32_t cell)
 {
     return f->radius[cell] > 0 ? f->radius[cell] : cbrt(3 * f->volume[cell] / (4 * BRC_PI));
@@ -58,8 +59,16 @@ static bool is_contact(const struct brc_facets *f, size_t i, double seed_distanc
     return f->is_contact[i] && seed_distance < radii + gap;
 }
 
+/* Sums over all inner facets, in the end the divisors of the others. */
+struct totals {
+    double seeds, centres; /* m3: sum of A d by the seeds and by the centres, along the normal */
+    size_t n_bonds;
+};
+
+/* Bonds join cells, so that their sums take the centres; contacts of spheres join seeds. */
 static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
-                      const struct calib_fabric_rules *rules, struct calib_fabric *sum)
+                      const struct calib_fabric_rules *rules, struct calib_fabric *sum,
+                      struct totals *all)
 {
     const int32_t *cell = f->cell[i];
     double seeds[3], centres[3];
@@ -67,8 +76,11 @@ static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
     brc_sub(centres, f->centre[cell[1]], f->centre[cell[0]]);
     double d_seeds = brc_norm(seeds), d = brc_dot(centres, f->normal[i]);
     double length = rules->is_length_of_gap ? 2 * rules->rounding : brc_norm(centres);
+    all->seeds += f->area[i] * d_seeds;
+    all->centres += f->area[i] * d;
     sum->n_inner++;
     if (f->is_contact[i]) {
+        all->n_bonds++;
         sum->bond += bond_area * d * d / length;
         sum->corners += (double)(f->first[i + 1] - f->first[i]) * d * d;
         sum->stretch += d / length;
@@ -80,48 +92,32 @@ static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
     }
 }
 
-static int check_rules(struct brc_context *ctx, const struct calib_fabric_rules *rules)
-{
-    bool needs_rounding = rules->is_eroded || rules->is_length_of_gap;
-    if (needs_rounding && !(rules->rounding > 0))
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "first guess: eroded areas and the gap as strain length need "
-                 "a sphero-radius above 0");
-    return 0;
-}
-
 int calib_fabric_measure(struct brc_context *ctx, const struct brc_facets *facets,
                          const struct calib_fabric_rules *rules, struct calib_fabric *out)
 {
-    double volume3 = 0, centres3 = 0;
-    size_t n_bonds = 0;
+    struct totals all = {0, 0, 0};
     memset(out, 0, sizeof *out);
-    BRC_TRY(check_rules(ctx, rules));
+    if ((rules->is_eroded || rules->is_length_of_gap) && !(rules->rounding > 0))
+        BRC_FAIL(
+            ctx, BRC_ERR_INPUT,
+            "first guess: eroded areas and the gap as strain length need a sphero-radius above "
+            "0");
     double *area = brc_alloc(ctx, facets->n_facets, sizeof *area);
     if (!area)
         return BRC_ERR_MEMORY;
     int code = bond_areas(ctx, facets, rules, area);
-    for (size_t i = 0; i < facets->n_facets && code == 0; i++) {
-        const int32_t *cell = facets->cell[i];
-        double seeds[3], centres[3];
-        if (cell[1] < 0)
-            continue;
-        brc_sub(seeds, facets->seed[cell[1]], facets->seed[cell[0]]);
-        brc_sub(centres, facets->centre[cell[1]], facets->centre[cell[0]]);
-        volume3 += facets->area[i] * brc_norm(seeds);
-        centres3 += facets->area[i] * brc_dot(centres, facets->normal[i]);
-        n_bonds += facets->is_contact[i] != 0;
-        add_facet(facets, i, area[i], rules, out);
-    }
+    for (size_t i = 0; i < facets->n_facets && code == 0; i++)
+        if (facets->cell[i][1] >= 0)
+            add_facet(facets, i, area[i], rules, out, &all);
     free(area);
     BRC_TRY(code);
-    if (out->n_contacts == 0 || n_bonds == 0)
+    if (out->n_contacts == 0 || all.n_bonds == 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "first guess: no facet of the specimen is a contact");
-    out->volume = centres3 / 3;
+    out->volume = all.centres / 3;
     out->mean_distance /= (double)out->n_contacts;
-    out->coverage /= volume3;
-    out->bond /= centres3;
-    out->corners /= centres3;
-    out->stretch /= (double)n_bonds;
+    out->coverage /= all.seeds;
+    out->bond /= all.centres;
+    out->corners /= all.centres;
+    out->stretch /= (double)all.n_bonds;
     return 0;
 }

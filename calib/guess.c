@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closed formulas and constants of published sets: a guess costs no run and saves a calibration
- * many. What was estimated, and how, goes into a note beside the values. */
+ * many. What was estimated, and how, goes into a note beside the values: a uniform strain is the
+ * stiffest possible motion, so that a guess is off by a known sense and an unknown amount (the
+ * published vgcm set gives 28.1 GPa by these formulas and 25.8 GPa when it is run). */
 #include "calib/guess.h"
 
 #include <math.h>
@@ -51,17 +53,17 @@ const struct calib_value *calib_guess_find(const struct calib_guess *g, const ch
 int calib_rock_from_targets(struct brc_context *ctx, const struct calib_targets *targets,
                             struct calib_rock *rock)
 {
-    double value[CALIB_N_QUANTITIES] = {0};
-    bool has[CALIB_N_QUANTITIES] = {false};
-    for (size_t i = 0; i < targets->n; i++) {
-        value[targets->target[i].quantity] = targets->target[i].value;
-        has[targets->target[i].quantity] = true;
+    const struct calib_target *t[CALIB_N_QUANTITIES];
+    double value[CALIB_N_QUANTITIES];
+    for (int i = 0; i < CALIB_N_QUANTITIES; i++) {
+        t[i] = calib_targets_find(targets, (enum calib_quantity_code)i);
+        value[i] = t[i] ? t[i]->value : 0;
     }
-    if (!has[CALIB_YOUNGS_MODULUS] || !has[CALIB_POISSON_RATIO])
+    if (!t[CALIB_YOUNGS_MODULUS] || !t[CALIB_POISSON_RATIO])
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "first guess: %s has no %s; the guess needs youngs_modulus and poisson_ratio",
-                 targets->title, has[CALIB_YOUNGS_MODULUS] ? "poisson_ratio" : "youngs_modulus");
-    rock->is_tension_estimated = !has[CALIB_TENSILE_STRENGTH];
+                 targets->title, t[CALIB_YOUNGS_MODULUS] ? "poisson_ratio" : "youngs_modulus");
+    rock->is_tension_estimated = !t[CALIB_TENSILE_STRENGTH];
     rock->tension = rock->is_tension_estimated
                         ? direct_over_brazilian * value[CALIB_BRAZILIAN_STRENGTH]
                         : value[CALIB_TENSILE_STRENGTH];
@@ -99,7 +101,8 @@ static int guess_elastic(struct brc_context *ctx, const struct calib_rock *rock,
     return 0;
 }
 
-/* Contacts need only the friction that interlocked facets leave open. */
+/* Contacts need only the friction that interlocked facets leave open. The interlock was seen in
+ * published vgcm sets; it is taken over for polyhedra, whose facets are of the same kind. */
 static int guess_friction(struct brc_context *ctx, const struct calib_rock *rock,
                           const struct calib_guess_params *params, struct calib_guess *out)
 {
@@ -127,7 +130,9 @@ static int guess_friction(struct brc_context *ctx, const struct calib_rock *rock
 
 /* ---- vgcm ---------------------------------------------------------------------------------- */
 
-/* Cohesion of points, 0 when the rock has no value to start from. */
+/* Cohesion of points, 0 when the rock has no value to start from. Cohesion before strength: the
+ * published sets agree on its ratio within 5 % of their mean, on that of the strength within 9 %.
+ */
 static double guess_tau(const struct calib_rock *rock, struct calib_guess *out)
 {
     if (rock->cohesion > 0) {
@@ -153,6 +158,8 @@ int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
     /* the point whose normal is the load's breaks first, at E-bar times the strain */
     double sigma_t = rock->tension * e_bar / out->e;
     double tau = guess_tau(rock, out);
+    /* elastic energy per area at the strength: sigma^2 d / (2 E-bar), and tau^2 d / (2 eta E-bar)
+     */
     double energy_scale = params->energy_ratio * fabric->mean_distance / (2 * e_bar);
     add(out, "e_bar", "Pa", e_bar);
     add(out, "eta", "1", eta);
@@ -168,7 +175,8 @@ int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
 
 /* ---- polyhedra ----------------------------------------------------------------------------- */
 
-/* Largest |opening| + |slip| over all facets, for a unit axial lengthening: at 22.5 deg. */
+/* Largest |opening| + |slip| over all facets, for a unit axial lengthening: at 22.5 deg. The sum is
+ * what eq 15 of gt12 compares with eps_th. */
 static double largest_bond_strain(double nu)
 {
     return 0.5 * (1 - nu) + (1 + nu) / sqrt(2);

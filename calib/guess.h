@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closed-form first guess of the contact parameters from measured values: the uniform-strain
- * (Voigt) estimate for stiffnesses, first-break and published anchors for strengths. Derivation,
- * and how far it may be off, in docs/calibration.md. */
+/* For whoever calibrates: where a search over runs should begin. Closed-form first guess of the
+ * contact parameters from measured values: the uniform-strain (Voigt) estimate for stiffnesses,
+ * first-break and published anchors for strengths. Derivation, and how far it may be off, in
+ * docs/calibration.md. */
 #ifndef CALIB_GUESS_H
 #define CALIB_GUESS_H
 

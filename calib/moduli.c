@@ -3,7 +3,11 @@
  *
  * A facet whose normal makes the angle acos(u) with the load sees, for a unit axial shortening and
  * the lateral lengthening nu, the opening nu - (1+nu) u^2 and the slip (1+nu) u sqrt(1-u^2); it
- * opens below u0 = sqrt(nu/(1+nu)). Normals are uniform in u, so each integral is a polynomial. */
+ * opens below u0 = sqrt(nu/(1+nu)). Normals are uniform in u, so each integral is a polynomial.
+ *
+ * Forward (stiffnesses to moduli) nu is the root of a monotone function, found by bisection: 200
+ * halvings end at the last digit wherever the root is, and a guess is made once. Backward all is
+ * linear, so that nothing is iterated. Slip of friction springs is left out (small strain). */
 #include "calib/guess.h"
 
 #include <math.h>
@@ -79,7 +83,7 @@ static double shear_of(const struct calib_inverse *how, double nu)
     return -lateral_stress(&normal, nu) / lateral_stress(&shear, nu);
 }
 
-/* Range of nu that shear ratios from 1 down to eta_min reach. */
+/* Range of nu, the smaller first, that shear ratios from 1 down to eta_min reach. */
 static int reachable(struct brc_context *ctx, const struct calib_inverse *how, double range[2])
 {
     for (int i = 0; i < 2; i++) {

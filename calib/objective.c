@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Residuals are differences in standard deviations: targets have different units and are known to
  * different certainty. A run that gives no value is an error that names its test: any number in its
- * place would lead the search on. */
+ * place would lead the search on. What to do about such an error is the minimiser's decision; there
+ * is none here, so that any that takes residuals can be put in front. */
 #include "calib/objective.h"
 
 #include "common/rigs/rigs.h"
@@ -77,14 +78,6 @@ static int check_bounds(struct brc_context *ctx, const struct calib_objective *o
     return 0;
 }
 
-static int run_test(struct brc_context *ctx, const struct calib_objective *o, const double *x,
-                    int test, struct brc_summary *summary)
-{
-    struct calib_trial trial = {o->model, test, o->n, o->variables, x};
-    memset(summary, 0, sizeof *summary);
-    return o->runner.run(ctx, o->runner.user, &trial, summary);
-}
-
 static int add_residual(struct brc_context *ctx, const struct calib_objective *o,
                         const struct calib_target *t, const struct brc_summary *summary,
                         struct calib_evaluation *out)
@@ -111,7 +104,8 @@ static int add_residual(struct brc_context *ctx, const struct calib_objective *o
     return 0;
 }
 
-/* Whether a target asks for the test. */
+/* Whether a target asks for the test. A test that several ask for is run once: all their values are
+ * results of one run. */
 static bool is_asked(const struct calib_objective *o, int test)
 {
     for (size_t i = 0; i < o->targets->n; i++)
@@ -129,7 +123,9 @@ int calib_objective_evaluate(struct brc_context *ctx, const struct calib_objecti
     for (int test = 0; test < brc_rigs_count(); test++) {
         if (!is_asked(o, test))
             continue;
-        BRC_TRY(run_test(ctx, o, x, test, &summary[test]));
+        const struct calib_trial trial = {o->model, test, o->n, o->variables, x};
+        memset(&summary[test], 0, sizeof summary[test]);
+        BRC_TRY(o->runner.run(ctx, o->runner.user, &trial, &summary[test]));
         out->cpu_s += summary[test].cpu_s;
         out->n_runs++;
     }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One trial of a calibration is one ordinary run of the test's case, so that what a calibration
- * finds can be repeated from the command line. Pictures alone are left out. */
+ * finds can be repeated from the command line. Pictures alone are left out: a search would draw
+ * hundreds that nobody looks at. A specimen is made once a test and kept, since no variable of a
+ * calibration changes it. */
 #include "calib/simulate.h"
 #include "common/rigs/rigs.h"
 #include "common/runs/run.h"
@@ -18,9 +20,8 @@ int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, s
     if (!p || p->kind != BRC_REAL)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s is not a quantity of the model",
                  trial->model, key);
-    bool is_pure = strcmp(p->unit, "1") == 0;
     int n = snprintf(buffer, size, "%s.%s=%.17g%s%s", trial->model, key, trial->x[i],
-                     is_pure ? "" : " ", is_pure ? "" : p->unit);
+                     brc_unit_blank(p->unit), brc_unit_shown(p->unit));
     if (n >= (int)size)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "calibration: %s.%s is too long", trial->model, key);
     return 0;
@@ -65,13 +66,14 @@ static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
         s->has_specimen[test] = true;
     }
     brc_progress_begin(&quiet, stderr, &trial->model, 1, true);
-    struct brc_run_options order = {.run_case = run_case,
-                                    .model = model,
-                                    .specimen = &s->specimen[test],
-                                    .dir = dir,
-                                    .is_forced = s->has_run[test],
-                                    .progress = &quiet};
-    int code = brc_run(ctx, &order, out);
+    struct brc_run_options options = {.run_case = run_case,
+                                      .model = model,
+                                      .specimen = &s->specimen[test],
+                                      .dir = dir,
+                                      .is_forced = s->has_run[test],
+                                      .progress = &quiet};
+    int code = brc_run(ctx, &options, out);
+    /* refused input has replaced nothing: what is in the folder then is somebody else's */
     s->has_run[test] |= brc_run_has_begun(dir) && code != BRC_ERR_INPUT;
     brc_progress_end(&quiet);
     return code;

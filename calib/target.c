@@ -29,6 +29,8 @@ static const struct brc_param target_params[] = {BRC_PARAM_LIST(CALIB_TARGET_PAR
 
 enum { N_TARGET_PARAMS = sizeof target_params / sizeof target_params[0] };
 
+/* The list of a section is made from that of any by putting in what its quantity is: eight lists
+ * would say the same eight times. */
 static int read_target(struct brc_context *ctx, const struct brc_casefile *c, int quantity,
                        struct calib_target *out)
 {
@@ -36,8 +38,7 @@ static int read_target(struct brc_context *ctx, const struct brc_casefile *c, in
     struct brc_param params[N_TARGET_PARAMS];
     struct target_params values;
     char zero[32];
-    bool is_pure = strcmp(q->unit, "1") == 0;
-    snprintf(zero, sizeof zero, "0%s%s", is_pure ? "" : " ", is_pure ? "" : q->unit);
+    snprintf(zero, sizeof zero, "0%s%s", brc_unit_blank(q->unit), brc_unit_shown(q->unit));
     memcpy(params, target_params, sizeof params);
     params[0].unit = q->unit;
     params[0].range = q->range;

@@ -60,6 +60,10 @@ struct brc_frame_mesh {
     struct brc_contact_cells contact_cells;
 };
 
+/* Where the two sides of an inner facet carry the point p of the specimen as it was: low is the
+ * side of the cell with the lower number. The facet has opened by high - low there. */
+void brc_frame_mesh_sides(const struct brc_sim *sim, size_t facet, const double p[3], double low[3],
+                          double high[3]);
 /* Makes the meshes from the present state. The tables point into *f: do not copy it. Freed by
  * brc_frame_mesh_free, also after a failure. */
 int brc_frame_mesh_make(struct brc_context *ctx, const struct brc_sim *sim,

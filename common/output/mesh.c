@@ -7,9 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-void brc_mesh_init(struct brc_mesh *m, enum brc_mesh_kind kind)
+void brc_mesh_init(struct brc_mesh *m, enum brc_mesh_kind kind, const char *name,
+                   struct brc_fieldset set, void *cells)
 {
     *m = (struct brc_mesh){.kind = kind};
+    brc_table_init(&m->cells, name, set, cells);
 }
 
 void brc_mesh_free(struct brc_mesh *m)
@@ -21,18 +23,15 @@ void brc_mesh_free(struct brc_mesh *m)
     memset(m, 0, sizeof *m);
 }
 
-int brc_mesh_point(struct brc_context *ctx, struct brc_mesh *m, const double x[3], int64_t *number)
+int brc_mesh_corner(struct brc_context *ctx, struct brc_mesh *m, const double x[3], int64_t *number)
 {
-    BRC_GROW(ctx, m->point, m->cap_points, m->n_points + 1);
-    memcpy(m->point[m->n_points], x, sizeof *m->point);
-    *number = (int64_t)m->n_points++;
-    return 0;
-}
-
-int brc_mesh_id(struct brc_context *ctx, struct brc_mesh *m, int64_t point)
-{
+    if (*number < 0) {
+        BRC_GROW(ctx, m->point, m->cap_points, m->n_points + 1);
+        memcpy(m->point[m->n_points], x, sizeof *m->point);
+        *number = (int64_t)m->n_points++;
+    }
     BRC_GROW(ctx, m->id, m->cap_ids, m->n_ids + 1);
-    m->id[m->n_ids++] = point;
+    m->id[m->n_ids++] = *number;
     return 0;
 }
 

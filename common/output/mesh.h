@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A mesh for programs that draw: points, cells of one kind, and a table of values of the cells. */
+/* A mesh for programs that draw: points, cells of one kind, and a table of values of the cells.
+ * Filled by frame_mesh.c, written by vtk.c; knows nothing of simulations. Cells are made one corner
+ * after the other, so that nobody has to count them before. */
 #ifndef BRC_MESH_H
 #define BRC_MESH_H
 
@@ -16,13 +18,16 @@ struct brc_mesh {
     struct brc_table cells; /* values, a row a cell; the owner struct is the caller's */
 };
 
-void brc_mesh_init(struct brc_mesh *m, enum brc_mesh_kind kind);
+/* An empty mesh; cells is the zeroed struct of the set's columns, which lives as long. */
+void brc_mesh_init(struct brc_mesh *m, enum brc_mesh_kind kind, const char *name,
+                   struct brc_fieldset set, void *cells);
 /* The table of values is freed, too. */
 void brc_mesh_free(struct brc_mesh *m);
-/* Adds a point and gives its number. */
-int brc_mesh_point(struct brc_context *ctx, struct brc_mesh *m, const double x[3], int64_t *number);
-/* Adds a point number to the cell that is being made; ends it. */
-int brc_mesh_id(struct brc_context *ctx, struct brc_mesh *m, int64_t point);
+/* A corner of the cell that is being made: the point *number, or where that is below 0 a new one at
+ * x, which gets its number. */
+int brc_mesh_corner(struct brc_context *ctx, struct brc_mesh *m, const double x[3],
+                    int64_t *number);
+/* Ends the cell. The table of values is resized by the caller. */
 int brc_mesh_end_cell(struct brc_context *ctx, struct brc_mesh *m);
 
 #endif

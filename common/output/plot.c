@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scripts of gnuplot with the data of cracks in them: pictures can be drawn again, or changed,
- * without breccia. Facets are drawn, not grains: what matters is where the specimen has broken. */
+ * without breccia. Facets are drawn, not grains: what matters is where the specimen has broken.
+ * Called by runs/run.c for one run and runs/compare.c for several side by side; knows of a test
+ * only the view that it declares. Pictures for a look at the whole; for all else there are frames.
+ */
 #include "common/output/plot.h"
 
 #include "common/base/text_file.h"
+#include "common/output/frame_mesh.h"
 #include "common/output/gnuplot.h"
 #include "common/geometry/vec.h"
 
@@ -97,8 +101,7 @@ static double facet_opening(const struct brc_sim *sim, size_t facet)
     double low[3], high[3];
     if (f->cell[facet][1] < 0)
         return 0;
-    brc_bodies_carry(&sim->bodies, (size_t)f->cell[facet][0], f->centroid[facet], low);
-    brc_bodies_carry(&sim->bodies, (size_t)f->cell[facet][1], f->centroid[facet], high);
+    brc_frame_mesh_sides(sim, facet, f->centroid[facet], low, high);
     brc_sub(high, high, low);
     return brc_norm(high);
 }
@@ -179,12 +182,15 @@ static unsigned mode_colour(int mode, int shade)
     return colour;
 }
 
+static void put_point(FILE *out, const double x[3])
+{
+    fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
+}
+
 static void put_polygon(FILE *out, const struct brc_facets *f, size_t facet)
 {
-    for (size_t k = f->first[facet]; k < f->first[facet + 1]; k++) {
-        const double *x = f->vertex[f->loop[k]];
-        fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
-    }
+    for (size_t k = f->first[facet]; k < f->first[facet + 1]; k++)
+        put_point(out, f->vertex[f->loop[k]]);
     fputc('\n', out);
 }
 
@@ -239,10 +245,8 @@ static void put_outline(FILE *out, const struct brc_convex *c, const struct view
             bool drawn = brc_dot(nf, ng) < sharp || front_f != front_g;
             if (!drawn || (front_f || front_g) == is_hidden)
                 continue;
-            for (int end = 0; end < 2; end++) {
-                const double *x = c->vertex[end ? b : a];
-                fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
-            }
+            put_point(out, c->vertex[a]);
+            put_point(out, c->vertex[b]);
             fputs("\n\n", out);
         }
     }
@@ -252,9 +256,9 @@ static void put_outline(FILE *out, const struct brc_convex *c, const struct view
 /* A step of 1, 2 or 5 times a power of ten that gives at most `most` steps over the length. */
 static double tic_step(double length, int most)
 {
-    static const double nice[] = {1, 2, 5, 10};
+    static const double nice[] = {1, 2, 5};
     double step = pow(10, floor(log10(length / most)));
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 3; i++)
         if (nice[i] * step * most >= length)
             return nice[i] * step;
     return 10 * step;
@@ -375,6 +379,16 @@ static const struct brc_rig_view plain_view = {.strain = "strain_axial",
                                                    "axial strain; dashed: lateral strain",
                                                .stress_label = "axial stress"};
 
+/* "file using strain:stress with lines STYLE": a curve against one of the strains. */
+static void put_curve(FILE *out, const struct brc_plot_runs *runs, int i, const char *strain,
+                      const char *style)
+{
+    put_file(out, runs, i, "curve.csv");
+    fprintf(out,
+            " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines %s lc rgb '%s' ",
+            strain, style, run_colour(i));
+}
+
 /* Stress against strain: along the load, and across it to the left. */
 static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
 {
@@ -383,20 +397,14 @@ static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
             v->stress_label);
     for (int i = 0; i < runs->n; i++) {
         fputs(i ? ", \\\n  " : "", out);
-        put_file(out, runs, i, "curve.csv");
-        fprintf(out,
-                " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines lw 2.4 "
-                "lc rgb '%s' title ",
-                v->strain, run_colour(i));
+        put_curve(out, runs, i, v->strain, "lw 2.4");
+        fputs("title ", out);
         brc_gnuplot_quoted(out, runs->label[i]);
         if (!v->lateral)
             continue;
         fputs(", \\\n  ", out);
-        put_file(out, runs, i, "curve.csv");
-        fprintf(out,
-                " using (100*column('%s [1]')):(1e-6*column('stress [Pa]')) with lines "
-                "lw 1.6 dt (8,5) lc rgb '%s' notitle",
-                v->lateral, run_colour(i));
+        put_curve(out, runs, i, v->lateral, "lw 1.6 dt (8,5)");
+        fputs("notitle", out);
     }
     fputc('\n', out);
 }
