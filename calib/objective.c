@@ -83,7 +83,7 @@ static int add_residual(struct brc_context *ctx, const struct calib_objective *o
                         struct calib_evaluation *out)
 {
     const struct calib_quantity *q = &calib_quantities[t->quantity];
-    const struct brc_summary_value *measured = brc_output_result(summary, q->result);
+    const struct brc_result *measured = brc_output_result(summary, q->result);
     if (!measured || !isfinite(measured->value))
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,

@@ -76,6 +76,8 @@ struct brc_measured {
     double value;     /* NAN: not measured */
     const char *note; /* why it was not measured; static, NULL where it was */
 };
+/* Both, for those who know no test: tables, summaries, calibration. All texts are static, so that a
+ * child process can hand a result to its parent as it is. */
 struct brc_result {
     const char *name;
     double value;

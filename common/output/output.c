@@ -61,7 +61,7 @@ static void json_results(FILE *out, const struct brc_summary *s)
 {
     fputs("  \"results\": {", out);
     for (int i = 0; i < s->n_results; i++) {
-        const struct brc_summary_value *r = &s->results[i];
+        const struct brc_result *r = &s->results[i];
         fprintf(out, "%s\n    \"%s\": {\"value\": ", i ? "," : "", r->name);
         json_number(out, r->value);
         fputs(", \"unit\": ", out);
@@ -142,7 +142,7 @@ const char *brc_output_energy(const struct brc_summary *s, char *text, size_t si
     return text;
 }
 
-const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name)
+const struct brc_result *brc_output_result(const struct brc_summary *s, const char *name)
 {
     for (int i = 0; i < s->n_results; i++)
         if (strcmp(s->results[i].name, name) == 0)

@@ -5,6 +5,7 @@
 
 #include "common/base/table.h"
 #include "common/engine/ledger.h"
+#include "common/engine/rig.h"
 #include "common/input/params.h"
 
 #include <stdio.h>
@@ -39,16 +40,6 @@ struct brc_frame_count {
     size_t n_points, n_cells;
 };
 
-/* A measured value; name, unit and note are static texts. */
-struct brc_summary_value {
-    const char *name;
-    double value; /* NAN: not measured */
-    const char *unit;
-    const char *note; /* why not; NULL where it was */
-};
-
-enum { BRC_SUMMARY_MAX_RESULTS = 32 };
-
 /* What a run reports. Plain data: a child process sends it to its parent as bytes. */
 struct brc_summary {
     char model[64], title[256], case_name[256];
@@ -72,7 +63,7 @@ struct brc_summary {
     uint64_t state_hash;
     enum brc_energy_check energy_check;
     int n_results;
-    struct brc_summary_value results[BRC_SUMMARY_MAX_RESULTS];
+    struct brc_result results[BRC_MAX_RESULTS];
 };
 
 /* The file dir/name as in text_file.h; numbers have 17 digits, what is not a number is null. */
@@ -81,7 +72,7 @@ int brc_output_summary(struct brc_context *ctx, const char *dir, const char *nam
 /* One sentence on the energy of a run that is doubtful or wrong, "" on others; returns text. */
 const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size);
 /* A result by name, NULL when the test has none of that name. */
-const struct brc_summary_value *brc_output_result(const struct brc_summary *s, const char *name);
+const struct brc_result *brc_output_result(const struct brc_summary *s, const char *name);
 /* A text as one field of a CSV file, by RFC 4180: in quotes where it holds commas, quotes or line
  * ends. */
 void brc_output_cell(FILE *out, const char *text);

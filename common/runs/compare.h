@@ -25,6 +25,11 @@ struct brc_shown {
 };
 /* Pascals as GPa or MPa, strains in per cent, by the name and the largest value of the row. */
 struct brc_shown brc_compare_unit(const char *name, const char *unit, double largest);
+/* Four digits, a dash for what is not a number; returns text. */
+enum { BRC_DIGITS_SIZE = 40 };
+const char *brc_compare_digits(double value, char text[BRC_DIGITS_SIZE]);
+/* A line of dashes. */
+void brc_compare_rule(FILE *out, int width);
 /* The table: one row a value, one column a summary. */
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n);
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LABEL_WIDTH = 26, COLUMN_WIDTH = 16, MAX_ROWS_OF_RESULTS = 64 };
+enum { LABEL_WIDTH = 26, COLUMN_WIDTH = 16 };
 
 struct brc_shown brc_compare_unit(const char *name, const char *unit, double largest)
 {
@@ -31,78 +31,82 @@ static void put_label(FILE *out, const char *name, const char *unit)
     fprintf(out, "%-*s", LABEL_WIDTH, label);
 }
 
-/* Four digits; whole numbers as such; a dash for what was not measured. */
+const char *brc_compare_digits(double value, char text[BRC_DIGITS_SIZE])
+{
+    double size = fabs(value);
+    if (!isfinite(value))
+        snprintf(text, BRC_DIGITS_SIZE, "-");
+    else if (value == 0)
+        snprintf(text, BRC_DIGITS_SIZE, "0");
+    else if (size >= 1e-3 && size < 1e5) /* 999.96 to 1000.0, but 1000 to 1000: hence 1e-9 */
+        snprintf(text, BRC_DIGITS_SIZE, "%.*f", (int)fmax(3 - floor(log10(size) + 1e-9), 0), value);
+    else
+        snprintf(text, BRC_DIGITS_SIZE, "%.3e", value);
+    return text;
+}
+
+void brc_compare_rule(FILE *out, int width)
+{
+    for (int i = 0; i < width; i++)
+        fputc('-', out);
+    fputc('\n', out);
+}
+
+/* Whole numbers are counts, and stand as such. */
 static void put_value(FILE *out, double value)
 {
-    char text[32];
-    if (!isfinite(value))
-        snprintf(text, sizeof text, "-");
-    else if (value == floor(value) && fabs(value) < 1e15)
-        snprintf(text, sizeof text, "%.0f", value);
-    else if (fabs(value) >= 1e-3 && fabs(value) < 1e5)
-        snprintf(text, sizeof text, "%.*f",
-                 3 - (int)floor(log10(fabs(value)) + 1e-9) > 0
-                     ? 3 - (int)floor(log10(fabs(value)) + 1e-9)
-                     : 0,
-                 value);
+    char text[BRC_DIGITS_SIZE];
+    if (value == floor(value) && fabs(value) < 1e15)
+        fprintf(out, "%*.0f", COLUMN_WIDTH, value);
     else
-        snprintf(text, sizeof text, "%.3e", value);
-    fprintf(out, "%*s", COLUMN_WIDTH, text);
+        fprintf(out, "%*s", COLUMN_WIDTH, brc_compare_digits(value, text));
 }
 
 static void put_result(FILE *out, const struct brc_summary *const *summary, int n,
-                       const struct brc_summary_value *row)
+                       const struct brc_result *row)
 {
     double largest = 0;
     for (int i = 0; i < n; i++) {
-        const struct brc_summary_value *r = brc_output_result(summary[i], row->name);
+        const struct brc_result *r = brc_output_result(summary[i], row->name);
         if (r && isfinite(r->value))
             largest = fmax(largest, fabs(r->value));
     }
     struct brc_shown shown = brc_compare_unit(row->name, row->unit, largest);
     put_label(out, row->name, shown.unit);
     for (int i = 0; i < n; i++) {
-        const struct brc_summary_value *r = brc_output_result(summary[i], row->name);
+        const struct brc_result *r = brc_output_result(summary[i], row->name);
         put_value(out, r ? shown.factor * r->value : NAN);
     }
     fputc('\n', out);
 }
 
-static void put_rule(FILE *out, int n)
-{
-    for (int i = 0; i < LABEL_WIDTH + n * COLUMN_WIDTH; i++)
-        fputc('-', out);
-    fputc('\n', out);
-}
-
 /* Rows that every test has. */
-static double cost_value(const struct brc_summary *s, int row)
-{
-    const double value[] = {(double)s->n_grains, s->n_contacts_mean, (double)s->n_points,
-                            (double)s->steps,    s->cpu_s,           s->ns_per_contact_step,
-                            s->energy_residual,  s->energy_drift,    s->unbalanced_max};
-    return value[row];
-}
-
 static void put_costs(FILE *out, const struct brc_summary *const *summary, int n)
 {
-    static const struct {
-        const char *name, *unit;
-        bool is_whole;
-    } row[] = {{"grains", "", true},
-               {"active contacts, mean", "", true},
-               {"points", "", true},
-               {"steps", "", true},
-               {"CPU", "s", false},
-               {"per contact and step", "ns", false},
-               {"energy residual", "", false},
-               {"energy drift", "", false},
-               {"unbalanced, largest", "", false}};
-    for (int k = 0; k < (int)(sizeof row / sizeof row[0]); k++) {
-        put_label(out, row[k].name, row[k].unit);
+    enum { N_ROWS = 9 };
+    static const char *const label[N_ROWS][2] = {{"grains", ""},
+                                                 {"active contacts, mean", ""},
+                                                 {"points", ""},
+                                                 {"steps", ""},
+                                                 {"CPU", "s"},
+                                                 {"per contact and step", "ns"},
+                                                 {"energy residual", ""},
+                                                 {"energy drift", ""},
+                                                 {"unbalanced, largest", ""}};
+    for (int k = 0; k < N_ROWS; k++) {
+        put_label(out, label[k][0], label[k][1]);
         for (int i = 0; i < n; i++) {
-            double value = cost_value(summary[i], k);
-            put_value(out, row[k].is_whole ? round(value) : value);
+            const struct brc_summary *s = summary[i];
+            const double value[N_ROWS] = {(double)s->n_grains,
+                                          round(s->n_contacts_mean),
+                                          (double)s->n_points,
+                                          (double)s->steps,
+                                          s->cpu_s,
+                                          s->ns_per_contact_step,
+                                          s->energy_residual,
+                                          s->energy_drift,
+                                          s->unbalanced_max};
+            put_value(out, value[k]);
         }
         fputc('\n', out);
     }
@@ -111,7 +115,7 @@ static void put_costs(FILE *out, const struct brc_summary *const *summary, int n
 /* How a run ended, where the end is not that the load has dropped. */
 static void put_end(FILE *out, const struct brc_summary *s)
 {
-    const struct brc_summary_value *strength = brc_output_result(s, "strength");
+    const struct brc_result *strength = brc_output_result(s, "strength");
     if (!s->is_finished)
         fprintf(out, "%s did not reach the end of the test: ended by %s\n", s->model, s->ended_by);
     else if (strength && !isfinite(strength->value))
@@ -140,31 +144,27 @@ static void put_notes(FILE *out, const struct brc_summary *s)
     }
 }
 
-static void put_energy(FILE *out, const struct brc_summary *s)
-{
-    char text[512];
-    if (*brc_output_energy(s, text, sizeof text))
-        fprintf(out, "%s\n", text);
-}
-
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n)
 {
+    int width = LABEL_WIDTH + n * COLUMN_WIDTH;
+    char energy[512];
     fprintf(out, "%s\n", *summary[0]->title ? summary[0]->title : summary[0]->case_name);
-    put_rule(out, n);
+    brc_compare_rule(out, width);
     fprintf(out, "%-*s", LABEL_WIDTH, "");
     for (int i = 0; i < n; i++)
         fprintf(out, "%*s", COLUMN_WIDTH, summary[i]->model);
     fputc('\n', out);
-    put_rule(out, n);
+    brc_compare_rule(out, width);
     for (int i = 0; i < summary[0]->n_results; i++)
         put_result(out, summary, n, &summary[0]->results[i]);
-    put_rule(out, n);
+    brc_compare_rule(out, width);
     put_costs(out, summary, n);
-    put_rule(out, n);
+    brc_compare_rule(out, width);
     fputs("broken: bonds, or local points where a model has several a contact\n", out);
     for (int i = 0; i < n; i++) {
         put_end(out, summary[i]);
         put_notes(out, summary[i]);
-        put_energy(out, summary[i]);
+        if (*brc_output_energy(summary[i], energy, sizeof energy))
+            fprintf(out, "%s\n", energy);
     }
 }

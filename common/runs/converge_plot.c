@@ -11,36 +11,26 @@
 
 static const double LEAST = 2e-4; /* relative error; what is below is drawn there */
 
-static const char *colour(int i)
-{
-    static const char *const all[] = {"#1b4f8f", "#d1570b", "#3a7d2c",
-                                      "#7a3b93", "#8c6d1f", "#555555"};
-    return all[i % 6];
-}
-
 /* ---- curves -------------------------------------------------------------------------------- */
 
-/* Axes with something to draw: numbers of their first rows. Grains are other specimens. */
-static int find_axes(const struct brc_converge_report *r, int first[BRC_CONVERGE_MAX_AXES])
-{
-    int n = 0;
-    for (int i = 0; i < r->n; i++) {
-        enum brc_converge_role role = r->row[i].setting->role;
-        if (role != BRC_CONVERGE_LADDER && role != BRC_CONVERGE_CHOICE)
-            continue;
-        bool is_new =
-            n == 0 || strcmp(r->row[first[n - 1]].setting->axis, r->row[i].setting->axis) != 0;
-        if (is_new && n < BRC_CONVERGE_MAX_AXES)
-            first[n++] = i;
-    }
-    return n;
-}
-
-/* Choices that are the case as written show no difference. */
+/* Grains are other specimens, and choices that are the case as written show no difference. */
 static bool is_drawn(const struct brc_converge_row *row)
 {
-    bool is_choice = row->setting->role == BRC_CONVERGE_CHOICE;
-    return isfinite(row->error.mean) && row->cpu_s > 0 && !(is_choice && row->is_case);
+    bool is_same = row->setting->role == BRC_CONVERGE_CHOICE && row->is_case;
+    return row->setting->role != BRC_CONVERGE_GRAINS && !is_same && isfinite(row->error.mean) &&
+           row->cpu_s > 0;
+}
+
+/* An axis is known by its first row. Whether row i is one, and has something to draw. */
+static bool is_curve(const struct brc_converge_report *r, int i)
+{
+    enum brc_converge_role role = r->row[i].setting->role;
+    if (r->rung[i].ladder != i || (role != BRC_CONVERGE_LADDER && role != BRC_CONVERGE_CHOICE))
+        return false;
+    for (int k = i; k < r->n && r->rung[k].ladder == i; k++)
+        if (is_drawn(&r->row[k]))
+            return true;
+    return false;
 }
 
 /* What stands at a point: the value in two digits, or the choice. */
@@ -58,14 +48,13 @@ static const char *short_value(const struct brc_converge_setting *s, char text[3
 }
 
 /* Block of data: cost, error, its bounds, label. */
-static int put_block(FILE *out, const struct brc_converge_report *r, int model, int axis, int first)
+static void put_block(FILE *out, const struct brc_converge_report *r, int model, int axis)
 {
-    int n = 0;
     char text[32];
     fprintf(out, "$axis_%d_%d << end_of_data\n", model, axis);
-    for (int i = first; i < r->n; i++) {
+    for (int i = axis; i < r->n && r->rung[i].ladder == axis; i++) {
         const struct brc_converge_row *row = &r->row[i];
-        if (strcmp(row->setting->axis, r->row[first].setting->axis) != 0 || !is_drawn(row))
+        if (!is_drawn(row))
             continue;
         double e = fabs(row->error.mean);
         double se = isfinite(row->error.deviation) ? row->error.deviation : 0;
@@ -73,10 +62,8 @@ static int put_block(FILE *out, const struct brc_converge_report *r, int model, 
                 100 * fmax(e - se, LEAST), 100 * fmax(e + se, LEAST));
         brc_gnuplot_quoted(out, short_value(row->setting, text));
         fputc('\n', out);
-        n++;
     }
     fputs("end_of_data\n", out);
-    return n;
 }
 
 static void put_range(FILE *out, const struct brc_converge_study *study,
@@ -86,7 +73,7 @@ static void put_range(FILE *out, const struct brc_converge_study *study,
     for (int i = 0; i < study->n_models; i++)
         for (int k = 0; k < report[i].n; k++) {
             const struct brc_converge_row *row = &report[i].row[k];
-            if (!is_drawn(row) || row->setting->role == BRC_CONVERGE_GRAINS)
+            if (!is_drawn(row))
                 continue;
             low = fmin(low, row->cpu_s);
             high = fmax(high, row->cpu_s);
@@ -100,21 +87,25 @@ static void put_range(FILE *out, const struct brc_converge_study *study,
 
 /* ---- panels -------------------------------------------------------------------------------- */
 
+/* number: of the axis among those that are drawn. */
 static void put_curve(FILE *out, const struct brc_converge_report *r, int model, int axis,
-                      int first)
+                      int number)
 {
-    const struct brc_converge_setting *s = r->row[first].setting;
+    static const char *const colours[] = {"#1b4f8f", "#d1570b", "#3a7d2c",
+                                          "#7a3b93", "#8c6d1f", "#555555"};
+    const struct brc_converge_setting *s = r->row[axis].setting;
     bool is_ladder = s->role == BRC_CONVERGE_LADDER;
+    const char *colour = colours[number % 6];
     char name[32];
     snprintf(name, sizeof name, "$axis_%d_%d", model, axis);
     fprintf(out, "  %s using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '%s' notitle, \\\n", name,
-            colour(axis));
+            colour);
     fprintf(out, "  %s using 1:2 with %s pt %d ps 1.1 lw 2 lc rgb '%s' title ", name,
-            is_ladder ? "linespoints" : "points", is_ladder ? 7 : 6 + 2 * (axis % 4), colour(axis));
+            is_ladder ? "linespoints" : "points", is_ladder ? 7 : 6 + 2 * (number % 4), colour);
     brc_gnuplot_quoted(out, s->axis);
     fprintf(out,
             ", \\\n  %s using 1:2:5 with labels font ',8' offset 0,0.7 tc rgb '%s' notitle, \\\n",
-            name, colour(axis));
+            name, colour);
 }
 
 static void put_point(FILE *out, const struct brc_converge_row *row, int mark, double size,
@@ -142,9 +133,9 @@ static void put_marks(FILE *out, const struct brc_converge_report *r)
     }
 }
 
-static void put_panel(FILE *out, const struct brc_converge_report *r, int model, const int *first,
-                      const int *n_points, int n)
+static void put_panel(FILE *out, const struct brc_converge_report *r, int model)
 {
+    int number = 0;
     double within = fmin(fmax(r->uncertainty, LEAST), 10);
     fputs("set title ", out);
     brc_gnuplot_quoted(out, r->model->model->name);
@@ -155,9 +146,9 @@ static void put_panel(FILE *out, const struct brc_converge_report *r, int model,
                 "solid 1 noborder fc rgb '#e4e4e4'\n",
                 100 * LEAST, 100 * within);
     fputs("plot \\\n", out);
-    for (int i = 0; i < n; i++)
-        if (n_points[i] > 0)
-            put_curve(out, r, model, i, first[i]);
+    for (int i = 0; i < r->n; i++)
+        if (is_curve(r, i))
+            put_curve(out, r, model, i, number++);
     put_marks(out, r);
     fputs("  1 with lines dt 2 lw 1 lc rgb '#888888' notitle, \\\n"
           "  5 with lines dt 2 lw 1 lc rgb '#888888' notitle\n",
@@ -169,8 +160,6 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
 {
     static const char *const picture[] = {"converge"};
     const struct brc_case *run_case = study->options->run_case;
-    int first[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES], n[BRC_CONVERGE_MAX_MODELS];
-    int n_points[BRC_CONVERGE_MAX_MODELS][BRC_CONVERGE_MAX_AXES];
     struct brc_text_file file;
     BRC_TRY(brc_text_file_begin(ctx, &file, study->options->dir, "converge.gp"));
     FILE *out = file.out;
@@ -180,18 +169,17 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
             "set key at graph 0.5, graph -0.14 center top horizontal maxrows 3\nset bmargin 8\n"
             "set xlabel 'processor time of a run [s]'\nset ylabel 'error of the %s [%%]'\n",
             study->results[study->observable].name);
-    for (int i = 0; i < study->n_models; i++) {
-        n[i] = find_axes(&report[i], first[i]);
-        for (int k = 0; k < n[i]; k++)
-            n_points[i][k] = put_block(out, &report[i], i, k, first[i][k]);
-    }
+    for (int i = 0; i < study->n_models; i++)
+        for (int k = 0; k < report[i].n; k++)
+            if (is_curve(&report[i], k))
+                put_block(out, &report[i], i, k);
     put_range(out, study, report);
     fprintf(out, "set multiplot layout 1,%d title ", study->n_models);
     brc_gnuplot_quoted(out,
                        *run_case->file.head.title ? run_case->file.head.title : run_case->name);
     fputs(" font ',14'\n", out);
     for (int i = 0; i < study->n_models; i++)
-        put_panel(out, &report[i], i, first[i], n_points[i], n[i]);
+        put_panel(out, &report[i], i);
     fputs("unset multiplot\n", out);
     BRC_TRY(brc_text_file_end(ctx, &file));
     return run_case->output.plots ? brc_gnuplot_draw(ctx, study->options->dir, picture, 1) : 0;

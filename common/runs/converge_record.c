@@ -3,12 +3,13 @@
  * told from a whole one. The file is locked while it is open. */
 #include "common/runs/converge_record.h"
 
+#include "common/base/grow.h"
+#include "common/runs/run.h"
+
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { LINE_SIZE = 4096, HEADER_SIZE = 2048, N_COLUMNS = 8 };
@@ -26,14 +27,7 @@ static void make_header(const struct brc_converge_study *study, char header[HEAD
 static int keep(struct brc_context *ctx, struct brc_converge_record *r,
                 const struct brc_converge_run *run)
 {
-    if (r->n == r->cap) {
-        size_t cap = r->cap ? 2 * r->cap : 64;
-        struct brc_converge_run *grown = brc_realloc(ctx, r->run, cap, sizeof *grown);
-        if (!grown)
-            return BRC_ERR_MEMORY;
-        r->run = grown;
-        r->cap = cap;
-    }
+    BRC_GROW(ctx, r->run, r->cap, r->n + 1);
     r->run[r->n] = *run;
     r->run[r->n++].is_done = true;
     return 0;
@@ -125,15 +119,6 @@ static int write_text(struct brc_context *ctx, struct brc_converge_record *r, co
     return 0;
 }
 
-static int lock(struct brc_context *ctx, const struct brc_converge_record *r)
-{
-    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-    if (fcntl(fileno(r->file), F_SETLK, &lock) != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
-                 r->path);
-    return 0;
-}
-
 int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record *r,
                              const struct brc_converge_study *study)
 {
@@ -141,13 +126,7 @@ int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record
     char header[HEADER_SIZE];
     *r = (struct brc_converge_record){.n_results = study->n_results};
     BRC_TRY(brc_folder_path(ctx, o->dir, "converge_runs.csv", r->path));
-    r->file = fopen(r->path, "a+");
-    if (!r->file)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
-    struct stat status;
-    if (fstat(fileno(r->file), &status) != 0 || !S_ISREG(status.st_mode))
-        BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a plain file; choose another folder with -o", r->path);
-    BRC_TRY(lock(ctx, r));
+    BRC_TRY(brc_run_open(ctx, o->dir, "converge_runs.csv", &r->file));
     make_header(study, header);
     /* another ladder may have begun, and ended, since the folder was looked at */
     fseek(r->file, 0, SEEK_END);

@@ -59,25 +59,16 @@ static void fill_row(const struct brc_converge_study *study, const struct brc_co
         row->error = (struct brc_converge_error){.mean = NAN, .deviation = NAN, .single = NAN};
 }
 
-/* Rungs of all ladders; the name of a ladder stands first in its list. */
-static void collect_rungs(struct brc_converge_report *r)
+/* A ladder is known by its first row; its settings follow each other. */
+static void fill_rung(struct brc_converge_report *r, int i)
 {
-    int ladder = -1;
-    const char *name = "";
-    for (int i = 0; i < r->n; i++) {
-        const struct brc_converge_setting *s = r->row[i].setting;
-        if (s->role != BRC_CONVERGE_LADDER)
-            continue;
-        if (strcmp(name, s->axis) != 0) {
-            name = s->axis;
-            ladder = i;
-        }
-        r->rung_row[r->n_rungs] = i;
-        r->rung[r->n_rungs++] = (struct brc_converge_rung){.ladder = ladder,
-                                                           .fineness = s->fineness,
-                                                           .error = r->row[i].error.mean,
-                                                           .cost = r->row[i].cpu_s};
-    }
+    const struct brc_converge_setting *s = r->row[i].setting;
+    bool goes_on = i > 0 && strcmp(r->row[i - 1].setting->axis, s->axis) == 0;
+    r->rung[i] = (struct brc_converge_rung){
+        .ladder = goes_on ? r->rung[i - 1].ladder : i,
+        .fineness = s->fineness,
+        .error = s->role == BRC_CONVERGE_LADDER ? r->row[i].error.mean : NAN,
+        .cost = r->row[i].cpu_s};
 }
 
 void brc_converge_report_make(const struct brc_converge_study *study, int model,
@@ -87,19 +78,18 @@ void brc_converge_report_make(const struct brc_converge_study *study, int model,
     const struct brc_converge_setting *s = m->setting;
     double value[BRC_CONVERGE_MAX_SEEDS];
     *out = (struct brc_converge_report){.model = m, .n = m->n};
-    for (int i = 0; i < m->n; i++)
+    for (int i = 0; i < m->n; i++) {
         fill_row(study, m, &s[i], &out->row[i]);
+        fill_rung(out, i);
+    }
     out->step = difference(study, &s[BRC_CONVERGE_AT_STEP], &s[BRC_CONVERGE_AT_REFERENCE]);
     out->loading = difference(study, &s[BRC_CONVERGE_AT_LOADING], &s[BRC_CONVERGE_AT_STEP]);
     out->reference = out->row[BRC_CONVERGE_AT_REFERENCE].value;
     out->uncertainty = brc_converge_uncertainty(&out->loading, &out->step);
     copy_values(study, &s[BRC_CONVERGE_AT_REFERENCE], value);
     out->scatter = brc_converge_scatter(value, study->options->seeds);
-    collect_rungs(out);
-    for (int k = 0; k < 2; k++) {
-        int best = brc_converge_cheapest(out->rung, out->n_rungs, brc_converge_within[k]);
-        out->cheapest[k] = best < 0 ? -1 : out->rung_row[best];
-    }
+    for (int k = 0; k < 2; k++)
+        out->cheapest[k] = brc_converge_cheapest(out->rung, out->n, brc_converge_within[k]);
 }
 
 bool brc_converge_is_shown(const struct brc_converge_report *r, int i, double error)

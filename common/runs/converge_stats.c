@@ -1,28 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plain sums: at most some hundred values. What is not there is NAN and passes through, so that a
- * missing run shows as a dash and not as a number. */
+/* At most some hundred values. What is not there is NAN and passes through, so that a missing run
+ * shows as a dash and not as a number. */
 #include "common/runs/converge_stats.h"
 
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 enum { MAX_VALUES = 1024 };
 
 double brc_converge_mean(const double *value, int n)
 {
-    double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += value[i];
-    return n > 0 ? sum / n : NAN;
+    return n > 0 ? gsl_stats_mean(value, 1, (size_t)n) : NAN;
 }
 
 /* Standard deviation of a sample. */
 static double deviation(const double *value, int n)
 {
-    double mean = brc_converge_mean(value, n), sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += (value[i] - mean) * (value[i] - mean);
-    return n > 1 ? sqrt(sum / (n - 1)) : NAN;
+    return n > 1 ? gsl_stats_sd(value, 1, (size_t)n) : NAN;
 }
 
 double brc_converge_scatter(const double *value, int n)
@@ -30,21 +26,14 @@ double brc_converge_scatter(const double *value, int n)
     return deviation(value, n) / fabs(brc_converge_mean(value, n));
 }
 
-static int compare(const void *p, const void *q)
-{
-    const double *a = p, *b = q;
-    return (*a > *b) - (*a < *b);
-}
-
 double brc_converge_median(const double *value, int n)
 {
     double sorted[MAX_VALUES];
     if (n < 1 || n > MAX_VALUES)
         return NAN;
-    for (int i = 0; i < n; i++)
-        sorted[i] = value[i];
-    qsort(sorted, (size_t)n, sizeof sorted[0], compare);
-    return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+    memcpy(sorted, value, (size_t)n * sizeof sorted[0]);
+    gsl_sort(sorted, 1, (size_t)n);
+    return gsl_stats_median_from_sorted_data(sorted, 1, (size_t)n);
 }
 
 struct brc_converge_error brc_converge_error(const double *value, const double *reference, int n)

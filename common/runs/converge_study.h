@@ -88,8 +88,8 @@ struct brc_converge_report {
     double reference, uncertainty, scatter;  /* the latter two relative */
     int n;
     struct brc_converge_row row[BRC_CONVERGE_MAX_SETTINGS];
-    struct brc_converge_rung rung[BRC_CONVERGE_MAX_SETTINGS]; /* of the ladders, with CPU time */
-    int rung_row[BRC_CONVERGE_MAX_SETTINGS], n_rungs;
+    /* the rows as rungs, with processor time as cost; what is on no ladder has no error */
+    struct brc_converge_rung rung[BRC_CONVERGE_MAX_SETTINGS];
     int cheapest[2]; /* rows, within 1 % and 5 %; -1: none */
 };
 

@@ -10,36 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 104, TEXT_SIZE = 40 };
+enum { WIDTH = 104 };
 
 /* Errors at which the steps of both kinds of loading are compared. */
 static const double levels[] = {0.01, 0.02, 0.05, 0.1};
 
-static void put_rule(FILE *out)
-{
-    for (int i = 0; i < WIDTH; i++)
-        fputc('-', out);
-    fputc('\n', out);
-}
-
-/* Four digits, a dash for what is not there. */
-static const char *digits(double value, char text[TEXT_SIZE])
-{
-    if (!isfinite(value))
-        snprintf(text, TEXT_SIZE, "-");
-    else if (fabs(value) >= 1000 || value == 0)
-        snprintf(text, TEXT_SIZE, "%.0f", value);
-    else
-        snprintf(text, TEXT_SIZE, "%.*f", 3 - (int)fmax(floor(log10(fabs(value))), -3), value);
-    return text;
-}
-
-static const char *percent(double part, bool is_signed, char text[TEXT_SIZE])
+static const char *percent(double part, bool is_signed, char text[BRC_DIGITS_SIZE])
 {
     if (!isfinite(part))
-        snprintf(text, TEXT_SIZE, "-");
+        snprintf(text, BRC_DIGITS_SIZE, "-");
     else
-        snprintf(text, TEXT_SIZE, is_signed ? "%+.2f" : "%.2f", 100 * part);
+        snprintf(text, BRC_DIGITS_SIZE, is_signed ? "%+.2f" : "%.2f", 100 * part);
     return text;
 }
 
@@ -49,40 +30,45 @@ static void put_row(FILE *out, const struct brc_converge_report *r, int i, struc
                     int n_seeds)
 {
     const struct brc_converge_row *row = &r->row[i];
-    char text[TEXT_SIZE];
+    char text[BRC_DIGITS_SIZE];
     fprintf(out, "%-10s %-24s", row->setting->axis, row->setting->label);
-    fprintf(out, "%10s", digits(shown.factor * row->value, text));
+    fprintf(out, "%10s", brc_compare_digits(shown.factor * row->value, text));
     fprintf(out, "%9s", percent(row->error.mean, true, text));
     fprintf(out, "%8s", percent(row->error.deviation, false, text));
     fprintf(out, "%8s", percent(row->error.single, false, text));
     fprintf(out, "%9.0f", row->steps);
-    fprintf(out, "%9s  ", digits(row->cpu_s, text));
+    fprintf(out, "%9s  ", brc_compare_digits(row->cpu_s, text));
     for (int k = 0; k < 2; k++)
         if (r->cheapest[k] == i)
             fprintf(out, "<= %g %%%s ", 100 * brc_converge_within[k],
                     brc_converge_is_shown(r, i, brc_converge_within[k]) ? "" : "?");
     if (row->is_case)
-        fputs("as written", out);
+        fputs("as written ", out);
     if (row->n_good < n_seeds)
         fprintf(out, "%d of %d ended", row->n_good, n_seeds);
     fputc('\n', out);
 }
 
+/* By what they are; of the references only the finest, as the others serve its uncertainty alone.
+ */
 static void put_rows(FILE *out, const struct brc_converge_study *study,
-                     const struct brc_converge_report *r, enum brc_converge_role role,
-                     const char *what)
+                     const struct brc_converge_report *r)
 {
+    static const char *const title[] = {
+        [BRC_CONVERGE_CHOICE] = "choices of the model: differences to the case\n",
+        [BRC_CONVERGE_GRAINS] = "other grains: differences to the case\n"};
     const struct brc_result *seen = &study->results[study->observable];
     struct brc_shown shown = brc_compare_unit(seen->name, seen->unit, fabs(r->reference));
-    bool is_first = true;
-    for (int i = 0; i < r->n; i++) {
-        bool is_hidden = i == BRC_CONVERGE_AT_STEP || i == BRC_CONVERGE_AT_LOADING;
-        if (r->row[i].setting->role != role || is_hidden)
-            continue;
-        if (is_first && *what)
-            fprintf(out, "%s\n", what);
-        is_first = false;
-        put_row(out, r, i, shown, study->options->seeds);
+    for (enum brc_converge_role role = 0; role <= BRC_CONVERGE_GRAINS; role++) {
+        const char *what = title[role];
+        for (int i = 0; i < r->n; i++) {
+            bool is_hidden = i == BRC_CONVERGE_AT_STEP || i == BRC_CONVERGE_AT_LOADING;
+            if (r->row[i].setting->role != role || is_hidden)
+                continue;
+            fputs(what ? what : "", out);
+            what = NULL;
+            put_row(out, r, i, shown, study->options->seeds);
+        }
     }
 }
 
@@ -91,10 +77,11 @@ static void put_head(FILE *out, const struct brc_converge_study *study,
 {
     const struct brc_result *seen = &study->results[study->observable];
     struct brc_shown shown = brc_compare_unit(seen->name, seen->unit, fabs(r->reference));
-    char value[TEXT_SIZE], all[TEXT_SIZE], loading[TEXT_SIZE], step[TEXT_SIZE], scatter[TEXT_SIZE];
-    char column[TEXT_SIZE];
+    char value[BRC_DIGITS_SIZE], all[BRC_DIGITS_SIZE], loading[BRC_DIGITS_SIZE],
+        step[BRC_DIGITS_SIZE], scatter[BRC_DIGITS_SIZE];
+    char column[BRC_DIGITS_SIZE];
     fprintf(out, "%s: reference %s %s %s, uncertain by %s %%", r->model->model->name, seen->name,
-            digits(shown.factor * r->reference, value), shown.unit,
+            brc_compare_digits(shown.factor * r->reference, value), shown.unit,
             percent(r->uncertainty, false, all));
     fprintf(out, " (loading %s %%, step %s %%, and chance)\n",
             percent(r->loading.mean, true, loading), percent(r->step.mean, true, step));
@@ -103,30 +90,14 @@ static void put_head(FILE *out, const struct brc_converge_study *study,
         fprintf(out, ": a mean is good to 1 %% over %.0f of them, to 5 %% over %.0f",
                 fmax(ceil(pow(r->scatter / 0.01, 2)), 1), fmax(ceil(pow(r->scatter / 0.05, 2)), 1));
     fputc('\n', out);
-    put_rule(out);
+    brc_compare_rule(out, WIDTH);
     snprintf(column, sizeof column, "[%s]", *shown.unit ? shown.unit : "1");
     fprintf(out, "%-10s %-24s%10s%9s%8s%8s%9s%9s  %s\n", "axis", "setting", column, "error %",
             "+- %", "one %", "steps", "CPU s", "cheapest");
-    put_rule(out);
+    brc_compare_rule(out, WIDTH);
 }
 
 /* ---- adaptive against fixed loading -------------------------------------------------------- */
-
-/* Rungs of one axis with their steps as cost. */
-static int collect_steps(const struct brc_converge_report *r, const char *axis,
-                         struct brc_converge_rung *rung)
-{
-    int n = 0;
-    for (int i = 0; i < r->n_rungs; i++) {
-        const struct brc_converge_row *row = &r->row[r->rung_row[i]];
-        if (strcmp(row->setting->axis, axis) != 0)
-            continue;
-        rung[n] = r->rung[i];
-        rung[n].ladder = 0;
-        rung[n++].cost = row->steps;
-    }
-    return n;
-}
 
 static void put_cost(FILE *out, struct brc_converge_cost cost)
 {
@@ -136,10 +107,11 @@ static void put_cost(FILE *out, struct brc_converge_cost cost)
         fputs("none of the rungs", out);
 }
 
-static void put_level(FILE *out, const struct brc_converge_report *r, double level,
-                      struct brc_converge_cost adaptive, struct brc_converge_cost fixed)
+static void put_level(FILE *out, const struct brc_converge_report *r, const char *which,
+                      double level, struct brc_converge_cost adaptive,
+                      struct brc_converge_cost fixed)
 {
-    fprintf(out, "%5.2f %%: ", 100 * level);
+    fprintf(out, "%s%5.2f %%: ", which, 100 * level);
     put_cost(out, adaptive);
     fputs(" against ", out);
     put_cost(out, fixed);
@@ -153,30 +125,36 @@ static void put_level(FILE *out, const struct brc_converge_report *r, double lev
 /* At some errors, and at that of the case as written, or of the reference where that is larger. */
 static void put_loadings(FILE *out, const struct brc_converge_report *r)
 {
-    struct brc_converge_rung adaptive[BRC_CONVERGE_MAX_SETTINGS], fixed[BRC_CONVERGE_MAX_SETTINGS];
-    int n = collect_steps(r, "loading", adaptive), m = collect_steps(r, "rate", fixed);
+    struct brc_converge_rung rung[BRC_CONVERGE_MAX_SETTINGS];
     const struct brc_converge_row *the_case = &r->row[BRC_CONVERGE_AT_CASE];
-    if (n == 0 || m == 0)
+    int adaptive = -1, fixed = -1;
+    for (int i = 0; i < r->n; i++) {
+        rung[i] = r->rung[i];
+        rung[i].cost = r->row[i].steps;
+        if (strcmp(r->row[i].setting->axis, "loading") == 0)
+            adaptive = rung[i].ladder;
+        if (strcmp(r->row[i].setting->axis, "rate") == 0)
+            fixed = rung[i].ladder;
+    }
+    if (adaptive < 0 || fixed < 0)
         return;
     fputs("steps for an error, adaptive against fixed loading:\n", out);
-    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
-        fputs("              ", out);
-        put_level(out, r, levels[i], brc_converge_cost(adaptive, n, 0, levels[i]),
-                  brc_converge_cost(fixed, m, 0, levels[i]));
-    }
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++)
+        put_level(out, r, "              ", levels[i],
+                  brc_converge_cost(rung, r->n, adaptive, levels[i]),
+                  brc_converge_cost(rung, r->n, fixed, levels[i]));
     double level = fmax(fabs(the_case->error.mean), r->uncertainty);
-    if (!isfinite(level))
-        return;
-    fputs("  as written, ", out);
-    put_level(out, r, level, (struct brc_converge_cost){.cost = the_case->steps},
-              brc_converge_cost(fixed, m, 0, level));
+    if (isfinite(level))
+        put_level(out, r, "  as written, ", level,
+                  (struct brc_converge_cost){.cost = the_case->steps},
+                  brc_converge_cost(rung, r->n, fixed, level));
 }
 
 /* ---- everything ---------------------------------------------------------------------------- */
 
 static void put_cheapest(FILE *out, const struct brc_converge_report *r)
 {
-    char cpu[TEXT_SIZE];
+    char cpu[BRC_DIGITS_SIZE];
     for (int k = 0; k < 2; k++) {
         double within = brc_converge_within[k];
         fprintf(out, "cheapest within %g %%: ", 100 * within);
@@ -186,7 +164,7 @@ static void put_cheapest(FILE *out, const struct brc_converge_report *r)
         }
         const struct brc_converge_row *row = &r->row[r->cheapest[k]];
         fprintf(out, "%s %s, %.0f steps, %s s%s\n", row->setting->axis, row->setting->label,
-                row->steps, digits(row->cpu_s, cpu),
+                row->steps, brc_compare_digits(row->cpu_s, cpu),
                 brc_converge_is_shown(r, r->cheapest[k], within)
                     ? ""
                     : "; its uncertainty reaches beyond");
@@ -206,13 +184,8 @@ void brc_converge_print(FILE *out, const struct brc_converge_study *study,
         const struct brc_converge_report *r = &report[i];
         fputc('\n', out);
         put_head(out, study, r);
-        put_rows(out, study, r, BRC_CONVERGE_CASE, "");
-        put_rows(out, study, r, BRC_CONVERGE_REFERENCE, "");
-        put_rows(out, study, r, BRC_CONVERGE_LADDER, "");
-        put_rows(out, study, r, BRC_CONVERGE_CHOICE,
-                 "choices of the model: differences to the case");
-        put_rows(out, study, r, BRC_CONVERGE_GRAINS, "other grains: differences to the case");
-        put_rule(out);
+        put_rows(out, study, r);
+        brc_compare_rule(out, WIDTH);
         put_cheapest(out, r);
         put_loadings(out, r);
     }

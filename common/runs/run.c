@@ -16,14 +16,12 @@
 #include "common/runs/case_text.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -52,6 +50,10 @@ struct run {
     struct counts counts;
     struct brc_frames frames;
     char *case_text, *parameters, seed[16]; /* for the files */
+    /* what files tell of their origin, and what a state holds beside the simulation */
+    struct brc_h5_text texts[4];
+    struct brc_state_part parts[2];
+    struct brc_h5_extra extra; /* those */
     FILE *log;
     double cpu_before, wall_before;
     double saved_at; /* s, wall clock at the last save */
@@ -59,21 +61,6 @@ struct run {
 };
 
 /* ---- folder -------------------------------------------------------------------------------- */
-
-/* The log is locked while the run lasts, so that no second run writes here. Its content stays. */
-static int open_log(struct run *r)
-{
-    char path[BRC_PATH_SIZE];
-    BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "log", path));
-    r->log = fopen(path, "a");
-    if (!r->log)
-        BRC_FAIL(r->ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
-    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-    if (fcntl(fileno(r->log), F_SETLK, &lock) != 0)
-        BRC_FAIL(r->ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
-                 r->options->dir);
-    return 0;
-}
 
 /* The case takes its place first: on a full disk that fails, and the old results are still there.
  */
@@ -118,42 +105,33 @@ static void add_times(struct run *r)
     r->wall_before = wall;
 }
 
-/* What files tell of their origin, and what a state holds beside the simulation. */
-enum { N_TEXTS = 4, N_PARTS = 2 };
-struct extra {
-    struct brc_h5_text texts[N_TEXTS];
-    struct brc_state_part parts[N_PARTS];
-    struct brc_h5_extra h5; /* points to those */
-};
-
-static void make_extra(struct run *r, struct extra *e)
+/* Anew for each file, as the table of frames grows. */
+static const struct brc_h5_extra *extra_of(struct run *r)
 {
-    const struct brc_case *run_case = r->options->run_case;
-    *e = (struct extra){.texts = {{"case", r->case_text},
-                                  {"case_name", run_case->name},
-                                  {"parameters", r->parameters},
-                                  {"seed", r->seed}},
-                        .parts = {{.path = "run",
-                                   .set = BRC_FIELDSET(count_fields, struct counts),
-                                   .base = &r->counts,
-                                   .n = 1,
-                                   .is_fixed = true},
-                                  {.path = "frames",
-                                   .set = r->frames.table.set,
-                                   .table = &r->frames.table,
-                                   .n = r->frames.table.n}}};
-    e->h5 = (struct brc_h5_extra){e->texts, N_TEXTS, e->parts, N_PARTS};
+    r->texts[0] = (struct brc_h5_text){"case", r->case_text};
+    r->texts[1] = (struct brc_h5_text){"case_name", r->options->run_case->name};
+    r->texts[2] = (struct brc_h5_text){"parameters", r->parameters};
+    r->texts[3] = (struct brc_h5_text){"seed", r->seed};
+    r->parts[0] = (struct brc_state_part){.path = "run",
+                                          .set = BRC_FIELDSET(count_fields, struct counts),
+                                          .base = &r->counts,
+                                          .n = 1,
+                                          .is_fixed = true};
+    r->parts[1] = (struct brc_state_part){.path = "frames",
+                                          .set = r->frames.table.set,
+                                          .table = &r->frames.table,
+                                          .n = r->frames.table.n};
+    r->extra = (struct brc_h5_extra){r->texts, 4, r->parts, 2};
+    return &r->extra;
 }
 
 static int save(struct run *r)
 {
     char path[BRC_PATH_SIZE];
-    struct extra extra;
     add_times(r);
-    make_extra(r, &extra);
-    BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->options->dir, &extra.h5));
+    BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->options->dir, extra_of(r)));
     BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "state.h5", path));
-    BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, &extra.h5));
+    BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, extra_of(r)));
     BRC_TRY(brc_frames_sweep(r->ctx, &r->frames, r->options->dir));
     /* limits of a run that goes on may have changed: so does the case, with the state */
     BRC_TRY(brc_run_keep_case(r->ctx, r->options->dir, r->options->run_case, r->case_text, false));
@@ -179,43 +157,44 @@ static int check_model(struct run *r, const char *path)
 static int load(struct run *r)
 {
     char path[BRC_PATH_SIZE], *saved;
-    struct extra extra;
-    make_extra(r, &extra);
     BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "state.h5", path));
     BRC_TRY(check_model(r, path));
     BRC_TRY(brc_h5_read_text(r->ctx, path, "parameters", &saved));
     int code = brc_case_same(r->ctx, saved, r->parameters);
     free(saved);
     BRC_TRY(code);
-    BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, &extra.h5));
+    BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, extra_of(r)));
     return brc_frames_sweep(r->ctx, &r->frames, r->options->dir);
 }
 
 static int update_frames(struct run *r)
 {
     const struct brc_output_params *output = &r->options->run_case->output;
-    struct extra extra;
-    if (!brc_frames_are_on(output))
-        return 0;
-    make_extra(r, &extra);
-    return brc_frames_update(r->ctx, &r->frames, r->options->dir, output, &r->sim, &extra.h5);
-}
-
-static int write_last_frame(struct run *r)
-{
-    struct extra extra;
-    make_extra(r, &extra);
-    return brc_frames_write(r->ctx, &r->frames, r->options->dir, &r->sim, &extra.h5);
+    return brc_frames_are_on(output) ? brc_frames_update(r->ctx, &r->frames, r->options->dir,
+                                                         output, &r->sim, extra_of(r))
+                                     : 0;
 }
 
 /* ---- step loop ----------------------------------------------------------------------------- */
 
-static size_t count_active(const struct brc_contacts *c)
+/* Over the contacts of grains and of platens. */
+struct totals {
+    size_t active; /* carry a spring */
+    size_t points;
+    double stiffness; /* N/m */
+};
+
+static struct totals total(const struct brc_sim *sim)
 {
-    size_t n = 0;
-    for (size_t i = 0; i < c->n; i++)
-        n += c->k[i][0] > 0;
-    return n;
+    const struct brc_contacts *const sets[] = {&sim->pairs, &sim->platens};
+    struct totals t = {0};
+    for (int s = 0; s < 2; s++)
+        for (size_t i = 0; i < sets[s]->n; i++) {
+            t.active += sets[s]->k[i][0] > 0;
+            t.points += (size_t)sets[s]->np[i];
+            t.stiffness += sets[s]->k[i][0];
+        }
+    return t;
 }
 
 static void report(struct run *r, bool is_done, bool is_stopped)
@@ -259,7 +238,8 @@ static int end_loop(struct run *r)
     BRC_TRY(save(r));
     bool has_last =
         brc_frames_are_on(&r->options->run_case->output) && strcmp(r->ended_by, "signal") != 0;
-    return has_last ? write_last_frame(r) : 0;
+    return has_last ? brc_frames_write(r->ctx, &r->frames, r->options->dir, &r->sim, extra_of(r))
+                    : 0;
 }
 
 static int step_loop(struct run *r)
@@ -269,7 +249,7 @@ static int step_loop(struct run *r)
     r->wall_before = r->saved_at = brc_progress_clock();
     while (!(r->ended_by = ended_by(sim))) {
         if (r->counts.n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
-            r->counts.n_active = (int64_t)(count_active(&sim->pairs) + count_active(&sim->platens));
+            r->counts.n_active = (int64_t)total(sim).active;
         BRC_TRY(update_frames(r));
         BRC_TRY(brc_sim_step(sim));
         BRC_TRY(brc_blowup_energy(sim));
@@ -307,22 +287,14 @@ static int check_results(const struct run *r, const struct brc_summary *s)
 }
 
 /* Energies that rounding alone makes: of all springs stretched by this part of the skin. */
-static double rounding_energy(const struct brc_sim *sim)
-{
-    static const double PART = 1e-8;
-    double stiffness = 0;
-    for (size_t i = 0; i < sim->pairs.n; i++)
-        stiffness += sim->pairs.k[i][0];
-    for (size_t i = 0; i < sim->platens.n; i++)
-        stiffness += sim->platens.k[i][0];
-    return stiffness * PART * PART * sim->skin * sim->skin;
-}
+static const double ROUNDING = 1e-8;
 
 static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
     const struct brc_case *run_case = r->options->run_case;
-    struct brc_result result[BRC_MAX_RESULTS];
+    struct totals t = total(sim);
+    double stretch = ROUNDING * sim->skin;
     struct brc_fragments fragments;
     double stored[3];
     sim->model.energy(sim, sim->state, stored);
@@ -330,8 +302,9 @@ static int measure(const struct run *r, struct brc_summary *s)
         .seed = run_case->specimen.seed,
         .n_grains = sim->bodies.n_grains,
         .n_facets = sim->specimen->facets.n_facets,
-        .n_contacts = count_active(&sim->pairs) + count_active(&sim->platens),
+        .n_contacts = t.active,
         .n_contacts_listed = sim->pairs.n + sim->platens.n,
+        .n_points = t.points,
         .n_frames = r->frames.table.n,
         .steps = sim->step,
         .dt = sim->dt,
@@ -339,9 +312,9 @@ static int measure(const struct run *r, struct brc_summary *s)
         .wall_s = r->counts.wall_s,
         .energy_residual = sim->run.ledger ? brc_ledger_residual(&sim->ledger) : NAN,
         .energy_drift = sim->run.ledger ? brc_ledger_drift(&sim->ledger, stored) : NAN,
-        .energy_check = sim->run.ledger
-                            ? brc_ledger_check(&sim->ledger, stored, rounding_energy(sim))
-                            : BRC_ENERGY_OFF,
+        .energy_check = sim->run.ledger ? brc_ledger_check(&sim->ledger, stored,
+                                                           t.stiffness * stretch * stretch)
+                                        : BRC_ENERGY_OFF,
         .unbalanced_max = brc_curve_unbalanced_max(sim),
         .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
@@ -349,16 +322,9 @@ static int measure(const struct run *r, struct brc_summary *s)
     snprintf(s->case_name, sizeof s->case_name, "%s", run_case->name);
     snprintf(s->ended_by, sizeof s->ended_by, "%s", r->ended_by ? r->ended_by : "failure");
     s->is_finished = strncmp(s->ended_by, "test.", 5) == 0;
-    for (size_t i = 0; i < sim->pairs.n; i++)
-        s->n_points += (size_t)sim->pairs.np[i];
-    for (size_t i = 0; i < sim->platens.n; i++)
-        s->n_points += (size_t)sim->platens.np[i];
     s->n_contacts_mean = r->counts.contact_steps / (double)sim->step;
     s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
-    s->n_results = brc_rigs_results(sim, result);
-    for (int i = 0; i < s->n_results; i++)
-        s->results[i] = (struct brc_summary_value){result[i].name, result[i].value, result[i].unit,
-                                                   result[i].note};
+    s->n_results = brc_rigs_results(sim, s->results);
     BRC_TRY(check_results(r, s));
     memcpy(s->frame, r->frames.last, sizeof s->frame);
     int code = brc_fragments_find(r->ctx, sim, &fragments);
@@ -460,7 +426,7 @@ static int prepare(struct run *r)
     BRC_TRY(brc_folder_make(r->ctx, o->dir));
     BRC_TRY(brc_case_keep(r->ctx, o->run_case, o->model, o->dir, &r->case_text));
     BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->run_case, r->case_text, o->is_resumed));
-    BRC_TRY(open_log(r));
+    BRC_TRY(brc_run_open(r->ctx, o->dir, "log", &r->log));
     BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
     bool has_state = o->is_resumed && brc_folder_has(o->dir, "state.h5");
     BRC_TRY(has_state ? load(r) : replace_old(r));

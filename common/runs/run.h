@@ -46,6 +46,10 @@ int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct br
  * it tells whether there is room, before old results are removed. */
 int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *text, bool is_new);
+/* Opens a file of the folder to add to it, and locks it until it is closed, so that no second run
+ * writes there; its content stays. For the log, and for the record of a ladder. Where it fails
+ * *file is to be closed, too, unless it is NULL. */
+int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FILE **file);
 /* Removes what runs write: all but case and log, and everything, with the folder when it is empty
  * then. */
 int brc_run_remove_results(struct brc_context *ctx, const char *dir);

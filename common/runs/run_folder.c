@@ -9,6 +9,7 @@
 #include "common/runs/case_files.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -202,6 +203,24 @@ int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc
     BRC_TRY(brc_folder_path(ctx, dir, "case.yaml", path));
     bool may_stay = !is_new || brc_case_is_input(run_case, path);
     return may_stay && holds(path, text) ? 0 : brc_text_file_write(ctx, NULL, path, text);
+}
+
+int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FILE **file)
+{
+    char path[BRC_PATH_SIZE];
+    struct stat status;
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    *file = NULL;
+    BRC_TRY(brc_folder_path(ctx, dir, name, path));
+    *file = fopen(path, "a+");
+    if (!*file)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    if (fstat(fileno(*file), &status) != 0 || !S_ISREG(status.st_mode))
+        BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a plain file; choose another folder with -o", path);
+    if (fcntl(fileno(*file), F_SETLK, &lock) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
+                 dir);
+    return 0;
 }
 
 int brc_run_remove_results(struct brc_context *ctx, const char *dir)

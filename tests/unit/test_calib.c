@@ -367,7 +367,7 @@ static void fake_result(struct brc_summary *out, const struct fake *f, const cha
 {
     if (f->lost && strcmp(f->lost, name) == 0)
         return;
-    out->results[out->n_results++] = (struct brc_summary_value){name, value, unit, NULL};
+    out->results[out->n_results++] = (struct brc_result){name, value, unit, NULL};
 }
 
 static int fake_run(struct brc_context *c, void *user, const struct calib_trial *trial,

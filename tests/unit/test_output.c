@@ -208,7 +208,7 @@ static void test_table(void **state)
     b.is_finished = false;
     strcpy(b.ended_by, "run.max_steps");
     b.results[0].value = 0.5e9;
-    b.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa", NULL};
+    b.results[1] = (struct brc_result){"strength", 12.34e6, "Pa", NULL};
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
     brc_compare_table(out, both, 2);
@@ -245,7 +245,7 @@ static void test_end_of_table(void **state)
 {
     (void)state;
     struct brc_summary s = sample();
-    s.results[1] = (struct brc_summary_value){"strength", 12.34e6, "Pa", NULL};
+    s.results[1] = (struct brc_result){"strength", 12.34e6, "Pa", NULL};
     char *text = end_of_table(&s);
     assert_null(strstr(text, "ended by"));
     free(text);
@@ -254,8 +254,8 @@ static void test_end_of_table(void **state)
     assert_string_equal(text, "vgcm: ended by test.strain_max, past its peak, before the load had "
                               "fallen to test.stop_drop\n");
     free(text);
-    s.results[0] = (struct brc_summary_value){"force_peak", NAN, "N", "no peak"};
-    s.results[1] = (struct brc_summary_value){"strength", NAN, "Pa", "no peak"};
+    s.results[0] = (struct brc_result){"force_peak", NAN, "N", "no peak"};
+    s.results[1] = (struct brc_result){"strength", NAN, "Pa", "no peak"};
     text = end_of_table(&s);
     assert_string_equal(text, "vgcm: force_peak, strength: no peak\n");
     free(text);
