@@ -187,5 +187,6 @@ struct poly_kernels {
 /* kernels.inc.h for each instruction set: the kernels for the options of a simulation. */
 struct poly_kernels poly_kernels_base(const struct brc_sim *sim);
 struct poly_kernels poly_kernels_avx2(const struct brc_sim *sim);
+struct poly_kernels poly_kernels_avx512(const struct brc_sim *sim);
 
 #endif

@@ -98,14 +98,14 @@ static void release(void *state)
 }
 
 /* Chosen once for a run: all instruction sets give the same bits, so that `run.simd` is for tests
- * and for measuring. AVX-512 takes the loops of AVX2: in lanes of four its own were faster in no
- * figure of bench_polyhedra (2 to 60 % slower in one sitting on a busy machine), and took a third
- * of the time to compile. */
+ * and for measuring. AVX-512 is kept for its 32 registers, in lanes of four as elsewhere: 3 to 8 %
+ * in the figures of bench_polyhedra on one machine, 0 to 30 % on another (docs/speed.md). */
 static void select_kernels(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
-    bool is_base = brc_simd_of(sim->run.simd) == BRC_SIMD_BASE;
-    st->kernels = is_base ? poly_kernels_base(sim) : poly_kernels_avx2(sim);
+    static struct poly_kernels (*const kernels[BRC_N_SIMD])(const struct brc_sim *) = {
+        poly_kernels_base, poly_kernels_avx2, poly_kernels_avx512};
+    st->kernels = kernels[brc_simd_of(sim->run.simd)](sim);
 }
 
 /* Items are not saved: they are made anew. */

@@ -260,6 +260,7 @@ VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags, size_t end)
         if (brc_lanes_any(fails))
             vgcm_requeue(l, &x, fails, VGCM_LOOSE);
     }
+    vgcm_queue_sort(&q[VGCM_POINTS], l->c->np);
     while (q[VGCM_POINTS].n > 0) {
         vgcm_fetch_ahead(l);
         vgcm_queue_next(&x, &q[VGCM_POINTS]);

@@ -12,6 +12,7 @@
 #include "tests/fixture.h"
 
 #include <math.h>
+#include <string.h>
 
 extern const struct brc_model brc_model_polyhedra;
 
@@ -91,6 +92,8 @@ static void slow_down(struct brc_sim *sim)
 static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen, const char *rule,
                    const char *evaluation, const char *name, double bar)
 {
+    if (getenv("BENCH_ONLY") && strcmp(getenv("BENCH_ONLY"), name))
+        return;
     const char *const settings[][2] = {
         {"features", rule}, {"evaluation", evaluation}, {NULL, NULL}};
     struct brc_sim sim;
@@ -119,6 +122,8 @@ static void compress(struct brc_sim *sim, double rate)
 static void unbonded(struct brc_context *ctx, const struct brc_specimen *specimen,
                      const char *evaluation, const char *name, double bar)
 {
+    if (getenv("BENCH_ONLY") && strcmp(getenv("BENCH_ONLY"), name))
+        return;
     const char *const settings[][2] = {{"bonds", "off"}, {"evaluation", evaluation}, {NULL, NULL}};
     struct brc_sim sim;
     struct bench_times t = {.n = 0};
@@ -306,6 +311,8 @@ int main(void)
     bonded(&ctx, &specimen, "closed", "auto", "polyhedra_bonded_closed_1000_ms_step", 0);
     unbonded(&ctx, &specimen, "auto", "polyhedra_unbonded_1000_ms_step", 3);
     unbonded(&ctx, &specimen, "literal", "polyhedra_unbonded_literal_1000_ms_step", 3);
+    if (getenv("BENCH_ONLY"))
+        return 0;
     breaking(&ctx, &specimen);
     listing(&ctx, &specimen, strong_bonds, "1e-5 1/s", "polyhedra_list_share_calm");
     listing(&ctx, &specimen, weak_bonds, "1.5e-5 1/s", "polyhedra_list_share");
