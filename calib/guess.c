@@ -42,14 +42,6 @@ static void add(struct calib_guess *g, const char *key, const char *unit, double
     g->value[g->n++] = (struct calib_value){key, unit, value};
 }
 
-const struct calib_value *calib_guess_find(const struct calib_guess *g, const char *key)
-{
-    for (size_t i = 0; i < g->n; i++)
-        if (strcmp(g->value[i].key, key) == 0)
-            return &g->value[i];
-    return NULL;
-}
-
 int calib_rock_from_targets(struct brc_context *ctx, const struct calib_targets *targets,
                             struct calib_rock *rock)
 {

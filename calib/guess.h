@@ -78,7 +78,4 @@ int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
 int calib_guess_polyhedra(struct brc_context *ctx, const struct calib_rock *rock,
                           const struct calib_fabric *fabric,
                           const struct calib_guess_params *params, struct calib_guess *out);
-/* NULL when the guess has no value for the key. */
-const struct calib_value *calib_guess_find(const struct calib_guess *g, const char *key);
-
 #endif

@@ -33,26 +33,31 @@ static double opening_limit(double nu)
     return nu > 0 ? sqrt(nu / (1 + nu)) : 0;
 }
 
-/* Slip terms of both parts. */
+/* An integral from 0 to 1 whose integrand has one stiffness below u0, where facets open, and
+ * another above it, where they close. */
+static double both_parts(double open, double closed, double below_u0, double whole)
+{
+    return open * below_u0 + closed * (whole - below_u0);
+}
+
 static double slip_sum(const struct calib_stiffness *s, double u0)
 {
-    double below = slip_integral(u0);
-    return s->t_open * below + s->t_closed * (slip_integral(1) - below);
+    return both_parts(s->t_open, s->t_closed, slip_integral(u0), slip_integral(1));
 }
 
 /* Lateral stress of a unit shortening with this nu; rises with nu, 0 in the uniaxial test. */
 static double lateral_stress(const struct calib_stiffness *s, double nu)
 {
-    double u0 = opening_limit(nu), below = lateral_integral(nu, u0);
-    double normal = s->n_open * below + s->n_closed * (lateral_integral(nu, 1) - below);
-    return normal + (1 + nu) * slip_sum(s, u0);
+    double u0 = opening_limit(nu);
+    return both_parts(s->n_open, s->n_closed, lateral_integral(nu, u0), lateral_integral(nu, 1)) +
+           (1 + nu) * slip_sum(s, u0);
 }
 
 static double axial_modulus(const struct calib_stiffness *s, double nu)
 {
-    double u0 = opening_limit(nu), below = axial_integral(nu, u0);
-    double normal = s->n_open * below + s->n_closed * (axial_integral(nu, 1) - below);
-    return 3 * ((1 + nu) * slip_sum(s, u0) - normal);
+    double u0 = opening_limit(nu);
+    return 3 * ((1 + nu) * slip_sum(s, u0) -
+                both_parts(s->n_open, s->n_closed, axial_integral(nu, u0), axial_integral(nu, 1)));
 }
 
 int calib_moduli(struct brc_context *ctx, const struct calib_stiffness *s, double *e, double *nu)
@@ -110,9 +115,7 @@ int calib_moduli_invert(struct brc_context *ctx, double e, double nu,
     double reached = is_inside ? nu : nu < range[0] ? range[0] : range[1];
     struct calib_stiffness unit = {how->n_ratio, 1, how->t_ratio * eta, eta};
     double scale = e / axial_modulus(&unit, reached);
-    out->n_open = scale * unit.n_open;
-    out->n_closed = scale * unit.n_closed;
-    out->t_open = scale * unit.t_open;
-    out->t_closed = scale * unit.t_closed;
+    *out = (struct calib_stiffness){scale * unit.n_open, scale * unit.n_closed, scale * unit.t_open,
+                                    scale * unit.t_closed};
     return 0;
 }

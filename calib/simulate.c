@@ -4,13 +4,14 @@
  * hundreds that nobody looks at. A specimen is made once a test and kept, since no variable of a
  * calibration changes it. */
 #include "calib/simulate.h"
+#include "common/base/folders.h"
 #include "common/rigs/rigs.h"
 #include "common/runs/run.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { ASSIGNMENT_SIZE = 256, DIR_SIZE = 4096 };
+enum { ASSIGNMENT_SIZE = 256 };
 
 int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, size_t i,
                      struct brc_param_list list, char *buffer, size_t size)
@@ -56,11 +57,10 @@ static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
                      const struct calib_trial *trial, const struct brc_model *model,
                      const struct brc_case *run_case, struct brc_summary *out)
 {
-    char dir[DIR_SIZE];
+    char dir[BRC_PATH_SIZE];
     struct brc_progress quiet;
     int test = trial->test;
-    if (snprintf(dir, sizeof dir, "%s/%s", s->dir, brc_rigs_at(test)->name) >= DIR_SIZE)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "the path %.80s... is too long", s->dir);
+    BRC_TRY(brc_folder_path(ctx, s->dir, brc_rigs_at(test)->name, dir));
     if (!s->has_specimen[test]) {
         BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, &s->specimen[test]));
         s->has_specimen[test] = true;

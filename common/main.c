@@ -43,17 +43,6 @@ struct options {
 
 /* ---- commands ------------------------------------------------------------------------------ */
 
-/* Where results go: as the user says, else by the names of the case and, for a run, of its model.
- * A path that is cut here is refused later, as too long for any file in it. */
-static void choose_dir(char dir[BRC_PATH_SIZE], const struct options *o,
-                       const struct brc_case *run_case, const char *model)
-{
-    if (o->dir)
-        snprintf(dir, BRC_PATH_SIZE, "%s", o->dir);
-    else
-        snprintf(dir, BRC_PATH_SIZE, "results/%s%s%s", run_case->name, *model ? "/" : "", model);
-}
-
 /* A large packing takes minutes in which there is nothing to save: signals end the program at once
  * until it is there, and are held for the step loop from then on. */
 static int make_specimen(struct brc_context *ctx, const struct brc_case *run_case,
@@ -81,10 +70,14 @@ static int start_single(struct brc_context *ctx)
     return 0;
 }
 
-static int run_model(struct brc_context *ctx, const struct options *o,
-                     const struct brc_case *run_case)
+static const char *model_of(const struct options *o, const struct brc_case *run_case)
 {
-    char dir[BRC_PATH_SIZE];
+    return o->model ? o->model : run_case->file.head.model;
+}
+
+static int run_model(struct brc_context *ctx, const struct options *o,
+                     const struct brc_case *run_case, const char *dir)
+{
     struct brc_specimen specimen = {0};
     struct brc_progress progress;
     struct brc_summary summary;
@@ -95,12 +88,11 @@ static int run_model(struct brc_context *ctx, const struct options *o,
                                       .is_resumed = o->is_resumed,
                                       .is_forced = o->is_forced,
                                       .progress = &progress};
-    const char *name = o->model ? o->model : run_case->file.head.model;
+    const char *name = model_of(o, run_case);
     if (!*name)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
                  o->operand);
     BRC_TRY(brc_case_model(ctx, name, &options.model));
-    choose_dir(dir, o, run_case, name);
     BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
     int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0)
@@ -110,18 +102,15 @@ static int run_model(struct brc_context *ctx, const struct options *o,
         code = brc_run(ctx, &options, &summary);
         brc_progress_end(&progress);
     }
-    if (code == 0 || code == BRC_ERR_ENERGY) { /* results are kept; the status says what they are */
+    if (code == 0 || code == BRC_ERR_ENERGY)
         brc_compare_table(stdout, &row, 1);
-        printf("results in %s\n", dir);
-    }
     brc_specimen_free(&specimen);
     return code;
 }
 
 static int compare_case(struct brc_context *ctx, const struct options *o,
-                        const struct brc_case *run_case)
+                        const struct brc_case *run_case, const char *dir)
 {
-    char dir[BRC_PATH_SIZE];
     struct brc_specimen specimen = {0};
     const struct brc_compare_options options = {.run_case = run_case,
                                                 .specimen = &specimen,
@@ -129,20 +118,16 @@ static int compare_case(struct brc_context *ctx, const struct options *o,
                                                 .is_resumed = o->is_resumed,
                                                 .is_forced = o->is_forced,
                                                 .is_quiet = o->is_quiet};
-    choose_dir(dir, o, run_case, "");
     int code = make_specimen(ctx, run_case, &specimen);
     if (code == 0)
         code = brc_compare(ctx, &options);
-    if (code == 0)
-        printf("results in %s\n", dir);
     brc_specimen_free(&specimen);
     return code;
 }
 
 static int converge_case(struct brc_context *ctx, const struct options *o,
-                         const struct brc_case *run_case)
+                         const struct brc_case *run_case, const char *dir)
 {
-    char dir[BRC_PATH_SIZE];
     const struct brc_converge_options options = {.run_case = run_case,
                                                  .model = o->model,
                                                  .dir = dir,
@@ -157,12 +142,8 @@ static int converge_case(struct brc_context *ctx, const struct options *o,
     if (options.refine < 2 || (options.refine & (options.refine - 1)) != 0)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
                  BRC_CONVERGE_MAX_REFINE, options.refine);
-    choose_dir(dir, o, run_case, "");
     brc_signals_hold(); /* at once: a ladder keeps each run that is finished */
-    int code = brc_converge(ctx, &options);
-    if (code == 0)
-        printf("results in %s\n", dir);
-    return code;
+    return brc_converge(ctx, &options);
 }
 
 static int act_info(struct brc_context *ctx, const struct options *o)
@@ -272,7 +253,7 @@ struct command {
     const char *operand, *does, *example, *more;
     /* One of the two: what is done with the case that the operand names, or without one. */
     int (*on_case)(struct brc_context *ctx, const struct options *o,
-                   const struct brc_case *run_case);
+                   const struct brc_case *run_case, const char *dir);
     int (*act)(struct brc_context *ctx, const struct options *o);
 };
 
@@ -437,48 +418,49 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
     return read_option(ctx, o, option, value);
 }
 
-/* Words are judged together only when all are read: with --help anything may be missing. */
-static int read_words(struct brc_context *ctx, const struct command *c, char **words,
-                      struct options *o)
-{
-    bool needs_file = *c->operand && *c->operand != '[';
-    for (int i = 0; words[i]; i++)
-        BRC_TRY(read_word(ctx, c, words, &i, o));
-    if (o->is_help)
-        return 0;
-    if (needs_file && !o->operand)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a %s: %s", c->name,
-                 strcmp(c->operand, "CASE") == 0 ? "case file" : "file", c->example);
-    if (o->is_resumed && o->is_forced)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "--resume and --force exclude each other");
-    return 0;
-}
-
 /* ---- the program --------------------------------------------------------------------------- */
 
-/* Reads the case for a command, and tells in its message where in the case a failure comes from. */
+/* Reads the case for a command, and tells in its message where in the case a failure comes from.
+ * Results go where the user says, else by the names of the case and, for a run, of its model. A
+ * path that is cut here is refused later, as too long for any file in it. */
 static int act_on_case(struct brc_context *ctx, const struct options *o, const struct command *c)
 {
+    char dir[BRC_PATH_SIZE];
     struct brc_case run_case;
     int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
     if (code == 0) {
-        code = c->on_case(ctx, o, &run_case);
+        const char *model = c->on_case == run_model ? model_of(o, &run_case) : "";
+        if (o->dir)
+            snprintf(dir, sizeof dir, "%s", o->dir);
+        else
+            snprintf(dir, sizeof dir, "results/%s%s%s", run_case.name, *model ? "/" : "", model);
+        code = c->on_case(ctx, o, &run_case, dir);
         brc_case_locate(ctx, &run_case);
     }
+    if (code == 0 || code == BRC_ERR_ENERGY) /* wrong ones are kept, too: the status says so */
+        printf("results in %s\n", dir);
     brc_case_free(&run_case);
     return code;
 }
 
+/* Words are judged together only when all are read: with --help anything may be missing. */
 static int act(struct brc_context *ctx, const struct command *c, char **words, struct options *o)
 {
+    bool needs_file = *c->operand && *c->operand != '[';
     o->kept = words;
     o->n_kept = 1; /* the command itself */
-    BRC_TRY(read_words(ctx, c, words + 1, o));
+    for (int i = 1; words[i]; i++)
+        BRC_TRY(read_word(ctx, c, words, &i, o));
     ctx->quiet = o->is_quiet;
     if (o->is_help) {
         print_command_help(stdout, c);
         return 0;
     }
+    if (needs_file && !o->operand)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a %s: %s", c->name,
+                 strcmp(c->operand, "CASE") == 0 ? "case file" : "file", c->example);
+    if (o->is_resumed && o->is_forced)
+        BRC_FAIL(ctx, BRC_ERR_USAGE, "--resume and --force exclude each other");
     return c->on_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
 }
 

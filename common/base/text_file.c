@@ -29,7 +29,7 @@ int brc_text_file_end(struct brc_context *ctx, struct brc_text_file *t)
     int reason = errno;
     unlink(t->part);
     BRC_FAIL(ctx, BRC_ERR_IO,
-             "cannot write %s: %s; what was there before stays: make room or choose another folder",
+             "cannot write %s: %s; what was saved before stays: make room or choose another folder",
              t->path, strerror(reason));
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* strtod in a loop rather than scanf, which reads past a number that is too large and cannot tell
- * where a line ends. Rows keep their line for messages of whoever judges the values. */
+ * where a line ends. Rows keep their line for messages of whoever checks the values. For points and
+ * planes of specimens; knows neither. */
 #include "common/input/numbers.h"
 
 #include "common/base/grow.h"
@@ -11,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Bytes of a line, which is far more than 8 numbers of 17 digits: a longer one is no row but the
+ * sign of another kind of file. */
 enum { LINE_SIZE = 510 };
 
 struct reader {
@@ -74,29 +77,35 @@ static int read_line(struct reader *r, char *text)
     return 0;
 }
 
+static int read_lines(struct reader *r, char *text, size_t size)
+{
+    char *next;
+    if (strlen(text) < size)
+        BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s: '%s' is not a text file: it holds a byte 0", r->key,
+                 r->path);
+    for (char *line = text; *line; line = next) {
+        next = line + strcspn(line, "\n");
+        if (*next)
+            *next++ = '\0';
+        r->line++;
+        BRC_TRY(read_line(r, line));
+    }
+    if (r->out->n == 0)
+        BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s: '%s' holds no row; expected one '%s' a line", r->key,
+                 r->path, r->form);
+    return 0;
+}
+
 int brc_numbers_read(struct brc_context *ctx, const char *key, const char *path, const char *form,
                      int low, int high, struct brc_numbers *out)
 {
     struct reader r = {ctx, key, path, form, low, high, 0, out, 0, 0};
     const struct brc_input in = {.key = key, .path = path, .largest = BRC_INPUT_LARGEST};
-    char *text, *next;
+    char *text;
     size_t size;
     *out = (struct brc_numbers){0};
     BRC_TRY(brc_input_read(ctx, &in, &text, &size));
-    int code = strlen(text) == size
-                   ? 0
-                   : brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                                   "%s: '%s' is not a text file: it holds a byte 0", key, path);
-    for (char *line = text; code == 0 && *line; line = next) {
-        next = line + strcspn(line, "\n");
-        if (*next)
-            *next++ = '\0';
-        r.line++;
-        code = read_line(&r, line);
-    }
-    if (code == 0 && out->n == 0)
-        code = brc_error_set(ctx, BRC_ERR_INPUT, __FILE__, __LINE__,
-                             "%s: '%s' holds no row; expected one '%s' a line", key, path, form);
+    int code = read_lines(&r, text, size);
     free(text);
     if (code != 0)
         brc_numbers_free(out);

@@ -147,8 +147,7 @@ static int check_range(struct brc_context *ctx, const struct brc_param *p, doubl
                   (r.high_open ? value < r.high : value <= r.high);
     if (inside)
         return 0;
-    BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %.60s is out of range; allowed %s%s%s", place, text, p->range,
-             brc_unit_blank(p->unit), brc_unit_shown(p->unit));
+    BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %.60s is out of range", place, text);
 }
 
 /* ---- one value of each kind ---------------------------------------------------------------- */
@@ -180,12 +179,10 @@ static int set_int(struct brc_context *ctx, const struct brc_param *p, void *to,
     while (isspace((unsigned char)*end))
         end++;
     if (end == text || *end != '\0')
-        BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "%s: '%.60s' is not a whole number, written in digits; allowed %s", place, text,
-                 p->range ? p->range : "any integer");
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: '%.60s' is not a whole number, written in digits", place,
+                 text);
     if (errno == ERANGE || value > INT_MAX || value < INT_MIN)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %.60s is out of range; allowed %s", place, text,
-                 p->range ? p->range : "[-2147483648, 2147483647]");
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: %.60s is out of range", place, text);
     *(int *)to = (int)value;
     return check_range(ctx, p, (double)value, text, place);
 }
@@ -409,8 +406,8 @@ const struct brc_param *brc_params_renamed(struct brc_param_list list, const cha
     return NULL;
 }
 
-/* What is allowed, where the message does not say it yet: that of a unit, for one, does not know
- * the range. The message is lengthened, as the first failure is the one that stays. */
+/* What is allowed, where the message does not say it yet: here alone, so that every message about a
+ * number ends in its range. It is lengthened, as the first failure is the one that stays. */
 static void add_range(struct brc_context *ctx, const struct brc_param *p)
 {
     size_t used = strlen(ctx->message);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* UDUNITS-2 accepts more than a case should: reciprocals, offsets, numbers in odd places and angles
- * as pure numbers. Each is a likely slip in a case, so each is refused here. */
+ * as pure numbers. Each is a likely slip in a case, so each is refused here. Called by params.c for
+ * every quantity; knows no key and no range. */
 #include "common/input/units.h"
 
 #include <udunits2.h>
@@ -9,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-static ut_system *unit_system; /* lives until the program ends */
+/* Lives until the program ends: reading the data base takes longer than reading a case. */
+static ut_system *unit_system;
 
 /* Reads the unit data base once; degrees get the short name that rock mechanics uses. */
 static int system_open(struct brc_context *ctx)
@@ -60,12 +62,18 @@ static bool is_same_dimension(const ut_unit *a, const ut_unit *b)
     return same;
 }
 
+/* A unit in SI base units, "" where it has no such form. */
+static const char *definition(const ut_unit *unit, char text[128])
+{
+    int n = ut_format(unit, text, 128, UT_DEFINITION | UT_ASCII);
+    return n > 0 && n < 128 ? text : "";
+}
+
 /* Radians count as dimensionless in UDUNITS; here a pure number is no angle, and the reverse. */
 static bool is_angle(const ut_unit *unit)
 {
     char text[128];
-    int n = ut_format(unit, text, sizeof text, UT_DEFINITION | UT_ASCII);
-    return n > 0 && n < (int)sizeof text && strstr(text, "rad") != NULL;
+    return strstr(definition(unit, text), "rad") != NULL;
 }
 
 /* False when the conversion is more than a factor. */
@@ -90,11 +98,10 @@ static int factor_between(struct brc_context *ctx, ut_unit *a, ut_unit *b, const
                  where, from, to);
     if (!is_same_dimension(a, b) || is_angle(a) != is_angle(b)) {
         char text[128];
-        int n = ut_format(a, text, sizeof text, UT_DEFINITION | UT_ASCII);
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s: the unit '%.60s' has the wrong dimension (it is %s); expected a unit of the "
                  "dimension of %s",
-                 where, from, n > 0 && n < (int)sizeof text ? text : "no plain unit", to);
+                 where, from, *definition(a, text) ? text : "no plain unit", to);
     }
     if (!get_factor(a, b, factor))
         BRC_FAIL(ctx, BRC_ERR_INPUT,

@@ -14,12 +14,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK_SIZE = 1 << 16 }; /* a multiple of 8: the hash goes on between blocks */
+enum { BLOCK_SIZE = 1 << 14 }; /* a multiple of 8: the hash goes on between blocks */
 /* States: 2: with a hash of the specimen. 3: the case holds its overrides as values. */
-const struct brc_checksum_kind brc_checksum_state = {
-    "state", 3, "use an undamaged copy, or start the run anew with --force"};
-const struct brc_checksum_kind brc_checksum_frame = {
-    "frame", 1, "use an undamaged copy, or start the run anew with --force"};
+const struct brc_checksum_kind brc_checksum_state = {"state", 3};
+const struct brc_checksum_kind brc_checksum_frame = {"frame", 1};
+static const char advice[] = "use an undamaged copy, or start the run anew with --force";
 
 enum { MARK_SIZE = 64 }; /* more than any kind's name needs */
 
@@ -52,21 +51,17 @@ static void print_header(const struct brc_checksum_kind *kind, const struct head
 /* Size of a file and hash of all behind the header. */
 static int measure(struct brc_context *ctx, const char *path, FILE *file, struct header *s)
 {
-    static const size_t block_size = BLOCK_SIZE;
-    char *block = brc_alloc(ctx, block_size, 1);
-    if (!block)
-        return BRC_ERR_MEMORY;
+    char block[BLOCK_SIZE];
     size_t n;
     s->size = BRC_CHECKSUM_SIZE;
     s->hash = BRC_HASH_SEED;
     errno = 0;
     bool is_good = fseek(file, BRC_CHECKSUM_SIZE, SEEK_SET) == 0;
-    while (is_good && (n = fread(block, 1, block_size, file)) > 0) {
+    while (is_good && (n = fread(block, 1, sizeof block, file)) > 0) {
         s->hash = brc_hash_bytes(block, n, s->hash);
         s->size += n;
     }
     is_good = is_good && !ferror(file);
-    free(block);
     if (!is_good)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", path, strerror(errno));
     return 0;
@@ -105,7 +100,7 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file, siz
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "cannot read %s: it is not a %s file of breccia, is cut short, or is of a version "
                  "before %s; %s",
-                 path, kind->name, BRC_VERSION, kind->advice);
+                 path, kind->name, BRC_VERSION, advice);
     if (said.format != kind->format)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s has the %s format %d, breccia %s reads %d; resume with the version that "
@@ -118,11 +113,11 @@ static int check_file(struct brc_context *ctx, const char *path, FILE *file, siz
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "%s has %" PRIu64 " bytes, it was saved with %" PRIu64 ": it is cut short or "
                  "overwritten; %s",
-                 path, found.size, said.size, kind->advice);
+                 path, found.size, said.size, advice);
     print_header(kind, &found, expected);
     if (memcmp(text, expected, BRC_CHECKSUM_SIZE) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "%s is damaged: its content does not match its hash; %s", path,
-                 kind->advice);
+                 advice);
     return 0;
 }
 

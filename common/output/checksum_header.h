@@ -15,7 +15,6 @@ enum { BRC_CHECKSUM_SIZE = 512 };
 struct brc_checksum_kind {
     const char *name; /* one word: the first line of the header is "breccia NAME, format N" */
     int format;
-    const char *advice; /* what to do about a damaged file */
 };
 extern const struct brc_checksum_kind brc_checksum_state, brc_checksum_frame;
 

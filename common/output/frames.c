@@ -215,20 +215,6 @@ static int in_frames(struct brc_context *ctx, const char *dir, const char *name,
     return brc_folder_path(ctx, dir, inner, path);
 }
 
-/* One file of a frame, with its row (but the role, the last column, which may change) as values of
- * the whole. */
-static int write_kind(struct brc_context *ctx, const struct brc_frames *f, size_t i,
-                      const char *dir, enum brc_frame_kind kind, const struct brc_mesh *m,
-                      const struct brc_h5_extra *extra)
-{
-    char path[BRC_PATH_SIZE], name[64];
-    struct brc_table whole = f->table;
-    whole.set.n--;
-    brc_vtk_name(name, sizeof name, kind_name[kind], f->step[i]);
-    BRC_TRY(in_frames(ctx, dir, name, path));
-    return brc_vtk_save(ctx, path, m, &whole, i, extra->texts, extra->n_texts);
-}
-
 /* The index of a kind, as ParaView reads it: names and times, without a peak that is not yet
  * written.
  */
@@ -252,17 +238,22 @@ static int write_series(struct brc_context *ctx, const struct brc_frames *f, con
     return brc_text_file_end(ctx, &file);
 }
 
-/* The files of row i, and the index: last, so that it names no file that is not there. */
+/* The files of row i, and the index: last, so that it names no file that is not there. Each file
+ * has its row (but the role, the last column, which may change) as values of the whole. */
 static int write_meshes(struct brc_context *ctx, struct brc_frames *f, size_t i, const char *dir,
                         const struct brc_frame_mesh *mesh, const struct brc_h5_extra *extra)
 {
-    char path[BRC_PATH_SIZE];
+    char path[BRC_PATH_SIZE], name[64];
     const struct brc_mesh *const kinds[BRC_N_FRAME_KINDS] = {&mesh->grains, &mesh->bonds,
                                                              &mesh->contacts};
+    struct brc_table whole = f->table;
+    whole.set.n--;
     BRC_TRY(in_frames(ctx, dir, "", path));
     BRC_TRY(brc_folder_make(ctx, path));
     for (int k = 0; k < BRC_N_FRAME_KINDS; k++) {
-        BRC_TRY(write_kind(ctx, f, i, dir, (enum brc_frame_kind)k, kinds[k], extra));
+        brc_vtk_name(name, sizeof name, kind_name[k], f->step[i]);
+        BRC_TRY(in_frames(ctx, dir, name, path));
+        BRC_TRY(brc_vtk_save(ctx, path, kinds[k], &whole, i, extra->texts, extra->n_texts));
         f->last[k] = (struct brc_frame_count){kind_name[k], kinds[k]->n_points, kinds[k]->n_cells};
     }
     for (int k = 0; k < BRC_N_FRAME_KINDS; k++)

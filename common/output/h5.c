@@ -113,7 +113,13 @@ static int write_file(const struct brc_h5_file *f, const char *image, size_t n)
     brc_checksum_make(header, f->header, image, n);
     fwrite(header, sizeof header, 1, file.out);
     fwrite(image, n, 1, file.out);
-    BRC_TRY(brc_text_file_end(f->ctx, &file));
+    int code = brc_text_file_end(f->ctx, &file);
+    if (code != 0) {
+        size_t used = strlen(f->ctx->message);
+        snprintf(f->ctx->message + used, sizeof f->ctx->message - used,
+                 ", then go on with --resume");
+        return code;
+    }
     snprintf(folder, sizeof folder, "%s", f->path);
     int fd = open(dirname(folder), O_RDONLY | O_DIRECTORY);
     bool is_on_disk = fd >= 0 && fsync(fd) == 0;

@@ -129,26 +129,21 @@ int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text 
     return write_texts(f, texts, n);
 }
 
-static int write_identity(const struct brc_h5_file *f, const struct brc_sim *sim)
-{
-    char hash[17], format[16], specimen[17];
-    hash_text(brc_sim_hash(sim), hash);
-    hash_text(brc_facets_hash(&sim->specimen->facets), specimen);
-    snprintf(format, sizeof format, "%d", brc_checksum_state.format);
-    const struct brc_h5_text texts[] = {{"format", format},
-                                        {"model", sim->model.name},
-                                        {"state_hash", hash},
-                                        {"specimen_hash", specimen}};
-    return write_texts(f, texts, sizeof texts / sizeof texts[0]);
-}
-
 static int write_all(const struct brc_h5_file *f, struct brc_sim *sim,
                      const struct brc_h5_extra *extra)
 {
     struct brc_state state;
+    char hash[17], format[16], specimen[17];
+    const struct brc_h5_text identity[] = {{"format", format},
+                                           {"model", sim->model.name},
+                                           {"state_hash", hash},
+                                           {"specimen_hash", specimen}};
     brc_state_list(sim, &state);
+    hash_text(brc_sim_hash(sim), hash);
+    hash_text(brc_facets_hash(&sim->specimen->facets), specimen);
+    snprintf(format, sizeof format, "%d", brc_checksum_state.format);
     BRC_TRY(brc_h5_put_provenance(f, extra->texts, extra->n_texts));
-    BRC_TRY(write_identity(f, sim));
+    BRC_TRY(write_texts(f, identity, sizeof identity / sizeof identity[0]));
     for (int i = 0; i < state.n; i++)
         BRC_TRY(write_part(f, &state.part[i]));
     for (int i = 0; i < extra->n_parts; i++)

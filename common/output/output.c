@@ -166,20 +166,13 @@ void brc_output_cell(FILE *out, const char *text)
 
 static void csv_value(FILE *out, const struct brc_field *f, const void *column, size_t k)
 {
-    switch (f->type) {
-    case BRC_F64:
+    if (f->type == BRC_F64)
         fprintf(out, "%.17g", ((const double *)column)[k]);
-        break;
-    case BRC_I64:
-        fprintf(out, "%" PRId64, ((const int64_t *)column)[k]);
-        break;
-    case BRC_I32:
-        fprintf(out, "%" PRId32, ((const int32_t *)column)[k]);
-        break;
-    case BRC_U8:
-        fprintf(out, "%u", ((const uint8_t *)column)[k]);
-        break;
-    }
+    else
+        fprintf(out, "%" PRId64,
+                f->type == BRC_I64   ? ((const int64_t *)column)[k]
+                : f->type == BRC_I32 ? ((const int32_t *)column)[k]
+                                     : ((const uint8_t *)column)[k]);
 }
 
 /* One line: the values of a row, or the names of the columns. Names are quoted as any text, since a

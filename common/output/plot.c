@@ -9,8 +9,10 @@
 #include "common/base/text_file.h"
 #include "common/output/frame_mesh.h"
 #include "common/output/gnuplot.h"
+#include "common/geometry/edges.h"
 #include "common/geometry/vec.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,13 +23,6 @@ static const double MM = 1e3; /* pictures are in mm */
 /* of a run's panel in a picture of cracks, in heights of the picture */
 #define PANEL_WIDTH  0.75
 #define PANEL_HEIGHT 0.80
-
-#define BRC_OWNER struct broken_columns
-struct broken_columns {
-    BRC_BROKEN_FIELDS(BRC_COLUMN, BRC_COLUMN3)
-};
-static const struct brc_field broken_fields[] = {BRC_BROKEN_FIELDS(BRC_FIELD, BRC_FIELD3)};
-#undef BRC_OWNER
 
 /* ---- broken area --------------------------------------------------------------------------- */
 
@@ -40,29 +35,23 @@ static double inner_area(const struct brc_facets *f)
     return area;
 }
 
+/* The rows of the curve, so that the two can be drawn, and read, side by side. */
 int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_sim *sim)
 {
-    struct broken_columns column = {0};
-    struct brc_table table;
     const struct brc_curve *curve = &sim->rig.curve;
     const struct brc_events *e = &sim->events;
-    struct brc_fieldset set = BRC_FIELDSET(broken_fields, column);
-    brc_table_init(&table, "broken", set, &column);
-    BRC_TRY(brc_table_resize(ctx, &table, curve->table.n));
     double sum[BRC_N_MODES] = {0}, all = inner_area(&sim->specimen->facets);
     size_t k = 0;
+    struct brc_text_file file;
+    BRC_TRY(brc_text_file_begin(ctx, &file, dir, "broken.csv"));
+    fputs("step [1],strain [1],tension [1],shear [1],torsion [1]\n", file.out);
     for (size_t i = 0; i < curve->table.n; i++) {
         for (; k < e->table.n && e->step[k] <= curve->step[i]; k++)
             sum[e->mode[k]] += e->area[k] / all;
-        column.step[i] = curve->step[i];
-        column.strain[i] = curve->strain[i];
-        column.tension[i] = sum[BRC_MODE_TENSION];
-        column.shear[i] = sum[BRC_MODE_SHEAR];
-        column.torsion[i] = sum[BRC_MODE_TORSION];
+        fprintf(file.out, "%" PRId64 ",%.17g,%.17g,%.17g,%.17g\n", curve->step[i], curve->strain[i],
+                sum[BRC_MODE_TENSION], sum[BRC_MODE_SHEAR], sum[BRC_MODE_TORSION]);
     }
-    int code = brc_output_csv(ctx, dir, "broken.csv", &table, NULL);
-    brc_table_free(&table);
-    return code;
+    return brc_text_file_end(ctx, &file);
 }
 
 /* ---- cracks -------------------------------------------------------------------------------- */
@@ -187,13 +176,6 @@ static void put_point(FILE *out, const double x[3])
     fprintf(out, "%.4f %.4f %.4f\n", MM * x[0], MM * x[1], MM * x[2]);
 }
 
-static void put_polygon(FILE *out, const struct brc_facets *f, size_t facet)
-{
-    for (size_t k = f->first[facet]; k < f->first[facet + 1]; k++)
-        put_point(out, f->vertex[f->loop[k]]);
-    fputc('\n', out);
-}
-
 /* One data block a mode and shade; used[mode][shade] tells which exist. */
 static void put_cracks(FILE *out, const struct brc_facets *f, const struct cracks *c,
                        const struct view *v, bool used[BRC_N_MODES][N_SHADES])
@@ -208,7 +190,9 @@ static void put_cracks(FILE *out, const struct brc_facets *f, const struct crack
                     fprintf(out, "$%s_%d << end_of_data\n", brc_mode_name((enum brc_mode)mode),
                             shade);
                 used[mode][shade] = true;
-                put_polygon(out, f, i);
+                for (size_t k = f->first[i]; k < f->first[i + 1]; k++)
+                    put_point(out, f->vertex[f->loop[k]]);
+                fputc('\n', out);
             }
             if (used[mode][shade])
                 fputs("end_of_data\n", out);
@@ -216,39 +200,23 @@ static void put_cracks(FILE *out, const struct brc_facets *f, const struct crack
     }
 }
 
-/* The other face at the edge from a to b, -1 when there is none. */
-static int64_t face_across(const struct brc_convex *c, int32_t a, int32_t b)
-{
-    for (size_t g = 0; g < c->n_faces; g++) {
-        size_t first = c->first[g], n = c->first[g + 1] - first;
-        for (size_t k = 0; k < n; k++)
-            if (c->loop[first + k] == b && c->loop[first + (k + 1) % n] == a)
-                return (int64_t)g;
-    }
-    return -1;
-}
-
-/* Edges of the domain that are sharp or on the rim as seen; is_hidden: those behind it. */
-static void put_outline(FILE *out, const struct brc_convex *c, const struct view *v, bool is_hidden)
+/* Edges of the domain that are sharp or on the rim as seen; is_hidden: those behind it. They are
+ * told apart here, since `pm3d depthorder` sorts polygons alone. */
+static void put_outline(FILE *out, const struct brc_convex *c, const struct brc_edges *edges,
+                        const struct view *v, bool is_hidden)
 {
     static const double sharp = 0.87; /* cosine of the turn of the normal, 30 degrees */
     fprintf(out, "$%s << end_of_data\n", is_hidden ? "hidden" : "outline");
-    for (size_t f = 0; f < c->n_faces; f++) {
-        size_t first = c->first[f], n = c->first[f + 1] - first;
-        for (size_t k = 0; k < n; k++) {
-            int32_t a = c->loop[first + k], b = c->loop[first + (k + 1) % n];
-            int64_t g = face_across(c, a, b);
-            if (g < (int64_t)f)
-                continue;
-            const double *nf = c->plane[f].n, *ng = c->plane[g].n;
-            bool front_f = brc_dot(nf, v->to_eye) > 0, front_g = brc_dot(ng, v->to_eye) > 0;
-            bool drawn = brc_dot(nf, ng) < sharp || front_f != front_g;
-            if (!drawn || (front_f || front_g) == is_hidden)
-                continue;
-            put_point(out, c->vertex[a]);
-            put_point(out, c->vertex[b]);
-            fputs("\n\n", out);
-        }
+    for (size_t i = 0; i < edges->n; i++) {
+        const struct brc_side *side = &edges->side[edges->first[i]]; /* two of a closed body */
+        const double *n0 = c->plane[side[0].face].n, *n1 = c->plane[side[1].face].n;
+        bool front0 = brc_dot(n0, v->to_eye) > 0, front1 = brc_dot(n1, v->to_eye) > 0;
+        bool drawn = brc_dot(n0, n1) < sharp || front0 != front1;
+        if (!drawn || (front0 || front1) == is_hidden)
+            continue;
+        put_point(out, c->vertex[side->low]);
+        put_point(out, c->vertex[side->high]);
+        fputs("\n\n", out);
     }
     fputs("end_of_data\n", out);
 }
@@ -337,22 +305,26 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
     struct view v = choose_view(output, sim->rig.type->view);
     bool used[BRC_N_MODES][N_SHADES];
     struct cracks c;
+    struct brc_edges edges = {0};
     struct brc_text_file file;
     BRC_TRY(classify(ctx, sim, output, &c));
-    int code = brc_text_file_begin(ctx, &file, dir, "cracks.plot");
-    FILE *out = file.out;
+    int code = brc_edges_find(ctx, &edges, s->domain.n_faces, s->domain.first, s->domain.loop);
+    if (code == 0)
+        code = brc_text_file_begin(ctx, &file, dir, "cracks.plot");
     if (code == 0) {
+        FILE *out = file.out;
         fprintf(out,
                 "# Broken facets of a run of breccia, one block a mode and shade; lengths in mm.\n"
                 "# Drawn by cracks.gp, which sets the terminal and loads this file.\n");
         put_cracks(out, &s->facets, &c, &v, used);
-        put_outline(out, &s->domain, &v, false);
-        put_outline(out, &s->domain, &v, true);
+        put_outline(out, &s->domain, &edges, &v, false);
+        put_outline(out, &s->domain, &edges, &v, true);
         put_axes(out, &s->domain, &v);
         put_legend(out, &c);
         put_splot(out, used);
         code = brc_text_file_end(ctx, &file);
     }
+    brc_edges_free(&edges);
     free(c.mode);
     return code;
 }

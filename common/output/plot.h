@@ -9,14 +9,6 @@
 
 enum { BRC_PLOT_MAX_RUNS = 16 };
 
-/* Part of the specimen's inner facet area that is broken, by mode, at each row of the curve. */
-#define BRC_BROKEN_FIELDS(SCALAR, VECTOR)                                                \
-    SCALAR(int64_t, step, BRC_STATE, "1", "step")                                        \
-    SCALAR(double, strain, BRC_STATE, "1", "platen strain")                              \
-    SCALAR(double, tension, BRC_STATE, "1", "area broken in tension / inner facet area") \
-    SCALAR(double, shear, BRC_STATE, "1", "area broken in shear / inner facet area")     \
-    SCALAR(double, torsion, BRC_STATE, "1", "area broken in torsion / inner facet area")
-
 /* Runs side by side: folder of each, relative to the folder of the picture. */
 struct brc_plot_runs {
     const char *title;
@@ -25,7 +17,8 @@ struct brc_plot_runs {
     const char *label[BRC_PLOT_MAX_RUNS], *folder[BRC_PLOT_MAX_RUNS];
 };
 
-/* DIR/broken.csv: see BRC_BROKEN_FIELDS. */
+/* DIR/broken.csv: at each row of the curve step, platen strain, and the part of the specimen's
+ * inner facet area that is broken in tension, in shear and in torsion. */
 int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_sim *sim);
 /* DIR/cracks.plot: broken facets of a run as polygons coloured by mode, outline of the specimen. */
 int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_sim *sim,

@@ -244,7 +244,7 @@ contents() {
     find "$1" -type f ! -name log -exec sha256sum {} + 2>/dev/null | sort
 }
 for part in 4 $((size / 2)) $((size - 1)); do
-    refuse 4 "$state.part: File too large" "what was saved before stays" "--resume" -- \
+    refuse 4 "$state: File too large" "what was saved before stays" "--resume" -- \
         limit "$part" more
 done
 refuse 4 "case.yaml: File too large" -- limit 0 run case.yaml -o $results --force
@@ -271,7 +271,7 @@ if unshare $as_root mount -t tmpfs none disk 2>/dev/null; then
         TMPDIR=$folder unshare $as_root sh full.sh 4000 $left $results "$breccia" 2>err.txt
         got=$?
         [ $got -eq 4 ] || fail "a full disk with $left left ends with $got"
-        grep -q "state.h5.part: No space left on device" err.txt || fail "no word of the full disk"
+        grep -q "state.h5[.a-z]*: No space left on device" err.txt || fail "no word of the full disk"
         [ "$(wc -l <err.txt)" -eq 1 ] || fail "more than one line about a full disk"
     done
 fi

@@ -190,12 +190,19 @@ static struct calib_guess_params default_params(void)
     return params;
 }
 
+static const struct calib_value *find_value(const struct calib_guess *g, const char *key)
+{
+    for (size_t i = 0; i < g->n; i++)
+        if (strcmp(g->value[i].key, key) == 0)
+            return &g->value[i];
+    return NULL;
+}
+
 static double guessed(const struct calib_guess *g, const char *key)
 {
-    const struct calib_value *v = calib_guess_find(g, key);
-    if (!v)
-        fail_msg("no value for %s", key);
-    return v->value;
+    const struct calib_value *v = find_value(g, key);
+    assert_non_null(v);
+    return v ? v->value : NAN;
 }
 
 static void rock_needs_its_values(void **state)
@@ -241,7 +248,7 @@ static void vgcm_guess_inverts(void **state)
     double d = fabric.mean_distance, sigma = guessed(&g, "sigma_t"), tau = guessed(&g, "tau");
     CHECK_NEAR(guessed(&g, "g_fn"), 9.5 * sigma * sigma * d / (2 * e_bar), 0, 1e-13);
     CHECK_NEAR(guessed(&g, "g_fs"), 9.5 * tau * tau * d / (2 * e_bar * eta), 0, 1e-13);
-    assert_null(calib_guess_find(&g, "mu"));
+    assert_null(find_value(&g, "mu"));
     assert_non_null(strstr(g.note, "Friction of contacts not guessed"));
 }
 

@@ -157,7 +157,7 @@ static void seal(const char *path, int format, size_t skip)
     size_t n = fread(bytes, 1, 1 << 20, file);
     fclose(file);
     assert_in_range(n, skip + 1, (1 << 20) - 1);
-    const struct brc_checksum_kind kind = {"state", format, ""};
+    const struct brc_checksum_kind kind = {"state", format};
     brc_checksum_make(seal, &kind, bytes + skip, n - skip);
     file = fopen(path, "wb");
     assert_non_null(file);
