@@ -49,6 +49,22 @@ void *brc_table_column(const struct brc_table *t, int field)
     return *column_slot(t, field);
 }
 
+double brc_table_number(const struct brc_table *t, int field, size_t k)
+{
+    const void *column = brc_table_column(t, field);
+    switch (t->set.fields[field].type) {
+    case BRC_F64:
+        return ((const double *)column)[k];
+    case BRC_I64:
+        return (double)((const int64_t *)column)[k];
+    case BRC_I32:
+        return ((const int32_t *)column)[k];
+    case BRC_U8:
+        return ((const uint8_t *)column)[k];
+    }
+    return 0;
+}
+
 void brc_table_init(struct brc_table *t, const char *name, struct brc_fieldset set, void *columns)
 {
     *t = (struct brc_table){.name = name, .set = set, .columns = columns};
@@ -137,6 +153,25 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
     }
     t->n = n;
     return 0;
+}
+
+void brc_table_copy(struct brc_table *t, size_t to, size_t from, size_t n)
+{
+    BRC_ASSERT(to + n <= t->n && from + n <= t->n);
+    for (int i = 0; i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        char *column = brc_table_column(t, i);
+        memcpy(column + to * size, column + from * size, n * size);
+    }
+}
+
+void brc_table_clear(struct brc_table *t, size_t first, size_t n)
+{
+    BRC_ASSERT(first + n <= t->n);
+    for (int i = 0; i < t->set.n; i++) {
+        size_t size = brc_field_size(&t->set.fields[i]);
+        memset((char *)brc_table_column(t, i) + first * size, 0, n * size);
+    }
 }
 
 /* The rows that stay keep their order. */

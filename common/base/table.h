@@ -88,11 +88,17 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n);
 #define BRC_NEW_ROW ((size_t)-1)
 /* Row i becomes the old row from[i]; BRC_NEW_ROW gives a zero row. */
 int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t *from, size_t n);
+/* Rows [to, to + n) become copies of [from, from + n), which must not overlap them; and rows of
+ * zeros. The row count stays. */
+void brc_table_copy(struct brc_table *t, size_t to, size_t from, size_t n);
+void brc_table_clear(struct brc_table *t, size_t first, size_t n);
 /* Frees the columns; a half-built or zeroed table is accepted. */
 void brc_table_free(struct brc_table *t);
 
 /* Column i as bytes, and the size of one of its rows. */
 void *brc_table_column(const struct brc_table *t, int field);
+/* Value k of a column as a number: exact, as no count of a run comes near 2^53. */
+double brc_table_number(const struct brc_table *t, int field, size_t k);
 size_t brc_field_size(const struct brc_field *f);
 size_t brc_type_size(enum brc_type type);
 

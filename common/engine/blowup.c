@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Says that a simulation has become unstable as long as it can be said where: once a velocity is no
+ * number, all of them are a few steps later. sim.c calls it when its own checks of a step fail, and
+ * runs for the energy; it reads state and never changes it. */
 #include "common/engine/blowup.h"
 
 #include "common/geometry/vec.h"
@@ -26,6 +29,8 @@ static double path_of(const struct brc_sim *sim, size_t body)
     return sim->bodies.path_length[body] - sim->bodies.path_at_rebuild[body];
 }
 
+/* In the body's frame: inertia is principal. With the velocities of the half step, so not to be set
+ * against the ledger to round-off. */
 static double kinetic_of(const struct brc_sim *sim, size_t body)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -77,31 +82,8 @@ static struct row worst_row(const struct brc_sim *sim, size_t body)
     return worst;
 }
 
-/* A scalar of the model's state, as text. */
-static void add_field(char text[TEXT_SIZE], const struct brc_field *f, const void *column,
-                      size_t row)
-{
-    double value = 0;
-    size_t used = strlen(text);
-    switch (f->type) {
-    case BRC_F64:
-        value = ((const double *)column)[row];
-        break;
-    case BRC_I64:
-        value = (double)((const int64_t *)column)[row];
-        break;
-    case BRC_I32:
-        value = ((const int32_t *)column)[row];
-        break;
-    case BRC_U8:
-        value = ((const uint8_t *)column)[row];
-        break;
-    }
-    snprintf(text + used, TEXT_SIZE - used, ", %s %g%s%s", f->name, value,
-             strcmp(f->unit, "1") == 0 ? "" : " ", strcmp(f->unit, "1") == 0 ? "" : f->unit);
-}
-
-/* The other body, and the state of the contact: what all models have, then the model's scalars. */
+/* The other body, and the state of the contact: what all models have, then the model's scalars by
+ * their declared names and units, so that a new model needs no text here. */
 static void describe_contact(const struct brc_sim *sim, size_t body, char text[TEXT_SIZE])
 {
     static const char *const status[] = {"never bonded", "bonded", "broken"};
@@ -115,13 +97,20 @@ static void describe_contact(const struct brc_sim *sim, size_t body, char text[T
              "its contact with %s %zu (%s): force %g N, stiffness %g N/m, gap %g m, points %d",
              other < sim->bodies.n_grains ? "grain" : "platen", other, status[c->status[i] % 3],
              brc_norm(c->f[i]), c->k[i][0], c->gap[i], c->np[i]);
-    for (int k = 0; k < c->model.set.n; k++)
-        if (c->model.set.fields[k].width == 1)
-            add_field(text, &c->model.set.fields[k], brc_table_column(&c->model, k), i);
+    for (int k = 0; k < c->model.set.n; k++) {
+        const struct brc_field *f = &c->model.set.fields[k];
+        bool has_unit = strcmp(f->unit, "1") != 0;
+        size_t used = strlen(text);
+        if (f->width == 1)
+            snprintf(text + used, TEXT_SIZE - used, ", %s %g%s%s", f->name,
+                     brc_table_number(&c->model, k, i), has_unit ? " " : "",
+                     has_unit ? f->unit : "");
+    }
 }
 
 /* ---- the message --------------------------------------------------------------------------- */
 
+/* Which key to change hangs on what has chosen the step. */
 static void advise(const struct brc_sim *sim, char text[TEXT_SIZE])
 {
     const struct brc_run_params *p = &sim->run;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory of the bodies, and where a point of one is now. Their motion is in integrate.c. */
 #include "common/engine/bodies.h"
 
 #include "common/geometry/vec.h"
@@ -38,6 +39,8 @@ void brc_bodies_free(struct brc_bodies *b)
     memset(b, 0, sizeof *b);
 }
 
+/* From the start by the whole rotation since, so that no error of single steps adds up in drawn
+ * meshes. */
 void brc_bodies_carry(const struct brc_bodies *b, size_t body, const double p[3], double now[3])
 {
     double arm[3], local[3], m[3][3], m0[3][3];

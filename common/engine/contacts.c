@@ -1,5 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of contacts, sorted by (a, b), with ranges of points in a table of their own. Called by
+ * models (rows and points) and by sim.c; what the fields mean is the models' affair.
+ *
+ * A row's points lie side by side, since loops go over them so, and all points lie in one table,
+ * since they are saved and hashed as one. A range that grows moves to the end and leaves a hole;
+ * holes are closed when they have become a fifth of the memory, as closing them at once would move
+ * all points for each crack. */
 #include "common/engine/contacts.h"
+
+#include "common/base/invariant.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +17,7 @@
 static const struct brc_field contact_fields[] = {BRC_CONTACT_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
+/* One table each for common fields, model fields and points. */
 int brc_contacts_create(struct brc_context *ctx, struct brc_contacts *c, const char *name,
                         size_t n_bodies, struct brc_fieldset model, struct brc_fieldset points)
 {
@@ -71,6 +81,7 @@ static int build_adjacency(struct brc_context *ctx, struct brc_contacts *c)
     for (size_t b = c->n_bodies; b > 0; b--)
         first[b] = first[b - 1];
     first[0] = 0;
+    BRC_ASSERT(first[c->n_bodies] == 2 * c->n);
     return 0;
 }
 
@@ -80,6 +91,8 @@ static int32_t padded(int32_t np, int32_t lanes)
     return (np + lanes - 1) / lanes * lanes;
 }
 
+/* Both lists are sorted, so one pass finds what stays. Rows that stay are moved and not made anew:
+ * their history (bond, friction, damage) is the state of the specimen. */
 int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int32_t (*pair)[2],
                      size_t n)
 {
@@ -87,6 +100,9 @@ int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int3
     if (!from)
         return BRC_ERR_MEMORY;
     for (size_t i = 0, old = 0; i < n; i++) {
+        BRC_ASSERT(pair[i][0] >= 0 && pair[i][0] < pair[i][1]);
+        BRC_ASSERT((size_t)pair[i][1] < c->n_bodies);
+        BRC_ASSERT(i == 0 || compare_pairs(pair[i - 1][0], pair[i - 1][1], pair[i]) < 0);
         while (old < c->n && compare_pairs(c->a[old], c->b[old], pair[i]) < 0)
             old++;
         bool kept = old < c->n && compare_pairs(c->a[old], c->b[old], pair[i]) == 0;
@@ -113,40 +129,34 @@ int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int3
 
 int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t i, int32_t np)
 {
+    size_t start = (size_t)c->p0[i], kept = (size_t)c->np[i];
+    BRC_ASSERT(i < c->n && np >= 0 && c->np[i] <= c->pcap[i]);
     if (np > c->pcap[i]) {
-        size_t start = c->points.n;
-        int32_t reserved = padded(np, c->lanes);
-        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)reserved));
-        for (int f = 0; f < c->points.set.n; f++) {
-            size_t size = brc_field_size(&c->points.set.fields[f]);
-            char *column = brc_table_column(&c->points, f);
-            memcpy(column + start * size, column + (size_t)c->p0[i] * size,
-                   (size_t)c->np[i] * size);
-        }
+        size_t old = start;
+        start = c->points.n;
+        c->pcap[i] = padded(np, c->lanes);
+        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)c->pcap[i]));
+        brc_table_copy(&c->points, start, old, kept);
         c->p0[i] = (int32_t)start;
-        c->pcap[i] = reserved;
-    } else if (np > c->np[i]) {
-        for (int f = 0; f < c->points.set.n; f++) {
-            size_t size = brc_field_size(&c->points.set.fields[f]);
-            char *column = brc_table_column(&c->points, f);
-            memset(column + (size_t)(c->p0[i] + c->np[i]) * size, 0,
-                   (size_t)(np - c->np[i]) * size);
-        }
+    } else if ((size_t)np > kept) {
+        brc_table_clear(&c->points, start + kept, (size_t)np - kept);
     }
     c->np[i] = np;
     return 0;
 }
 
+/* By halving: rows are sorted. a and b are columns of their own, so bsearch, which wants one array
+ * of pairs, does not fit. */
 int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b)
 {
     const int32_t pair[2] = {a, b};
     size_t low = 0, high = c->n;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        int order = compare_pairs(c->a[middle], c->b[middle], pair);
-        if (order == 0)
+        int side = compare_pairs(c->a[middle], c->b[middle], pair);
+        if (side == 0)
             return (int64_t)middle;
-        if (order < 0)
+        if (side < 0)
             low = middle + 1;
         else
             high = middle;
@@ -185,6 +195,8 @@ int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c)
     return arrange(ctx, c, 1);
 }
 
+/* Files hold packed ranges and no places in memory, so both follow from the numbers of points. A
+ * file whose tables contradict each other is bad input, whatever its checksum says. */
 int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
 {
     c->n = c->table.n;
@@ -209,6 +221,8 @@ int brc_contacts_tidy(struct brc_context *ctx, struct brc_contacts *c)
     return 4 * c->points.n > 5 * used + 64 ? brc_contacts_compact(ctx, c) : 0;
 }
 
+/* Row by row over the points, so that neither holes nor padding count: a state must have the hash
+ * of its like that was saved, packed and read again. */
 uint64_t brc_contacts_hash(const struct brc_contacts *c, uint64_t seed)
 {
     uint64_t hash = brc_table_hash(&c->table, seed);

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Connected parts of the specimen by union-find over the bonds that hold: nearly linear in the
+ * bonds, without the lists of neighbours that a search through the graph would need. The lowest
+ * grain is the root of its set, whatever the order of the bonds, so that numbers are the same in
+ * each run. Called by runs and frames, never by a step. */
 #include "common/engine/fragments.h"
 
 #include "common/engine/sim.h"
@@ -29,6 +33,8 @@ static void join(int32_t *parent, int32_t a, int32_t b)
         parent[low] = high;
 }
 
+/* By grain where volumes are equal: else equal grains of a grid would be numbered by qsort's whim.
+ */
 static int by_volume(const void *a, const void *b)
 {
     const struct entry *p = a, *q = b;
@@ -91,13 +97,14 @@ int brc_fragments_find(struct brc_context *ctx, const struct brc_sim *sim,
                        struct brc_fragments *out)
 {
     const struct brc_contacts *c = &sim->pairs;
+    double (*left)(const struct brc_sim *, const void *, size_t) = sim->model.strength_left;
     uint8_t *holds = brc_alloc(ctx, c->n, sizeof *holds);
     *out = (struct brc_fragments){0};
     if (!holds)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < c->n; i++)
         holds[i] = c->status[i] == BRC_INTACT &&
-                   sim->model.strength_left(sim, sim->state, i) >= BRC_FRAGMENT_STRENGTH;
+                   (!left || left(sim, sim->state, i) >= BRC_FRAGMENT_STRENGTH);
     int code = brc_fragments_connect(ctx, sim->bodies.n_grains, sim->specimen->facets.volume, c,
                                      holds, out);
     free(holds);

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One half of the integrator: which loops run, and what the ledger gets of them. The loops over
+ * bodies, compiled for each instruction set, are in integrate_kernels.inc.h. Called by sim.c alone.
+ */
 #include "common/engine/integrate.h"
 
 #include "common/engine/rotation.h"
@@ -6,11 +9,15 @@
 #include "common/geometry/vec.h"
 #include "common/parallel/sums.h"
 
+/* Exactly, not nearly: scaled moments are set equal, and those of a general grain never are by
+ * chance. */
 static bool is_isotropic(const double inertia[3])
 {
     return inertia[0] == inertia[1] && inertia[1] == inertia[2];
 }
 
+/* Equal moments turn by the exact rotation of w dt: no splitting, and w stays as it is without a
+ * moment. */
 static void turn_isotropic(double q[4], const double w[3], double dt)
 {
     double phi[3], turn[4], old[4] = {q[0], q[1], q[2], q[3]};
@@ -44,6 +51,9 @@ void brc_integrate_drift(struct brc_sim *sim)
     loops_of(sim)->drift(sim);
 }
 
+/* Sums over bodies are exact, as the kinetic energy feeds back into the rate of adaptive loading.
+ * Work of damping over the half step after the kick is kept apart: it belongs to the next step,
+ * which may not come. */
 void brc_integrate_kick(struct brc_sim *sim, double dt)
 {
     const struct brc_bodies *b = &sim->bodies;

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the ledger's terms add up to, and whether a run can be trusted. Terms are booked where they
+ * arise: by models, platens, integrator, mass scaling and loading. */
 #include "common/engine/ledger.h"
 
 #include <math.h>
@@ -42,6 +44,9 @@ double brc_ledger_drift(const struct brc_ledger *l, const double stored[3])
     return part_of_work(l, drift_of(l, stored));
 }
 
+/* Both errors count in energy first, in parts of the work only then: of a specimen that nothing has
+ * loaded any part is large. The comparison is written so that values that are no numbers fail it.
+ */
 enum brc_energy_check brc_ledger_check(const struct brc_ledger *l, const double stored[3],
                                        double noise)
 {

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Masses of the quasi-static regime, after eqs 26 and 27 of vgcm: as large as a step of 1 needs.
+ * They follow the contacts' sums of k, which models keep at hand, so no eigenvalue is computed;
+ * what the bound is worth is in docs/numerics.md. Called by sim.c alone. */
 #include "common/engine/mass_scaling.h"
 
 #include "common/engine/sim.h"
@@ -62,6 +65,8 @@ void brc_mass_scaling_stiffness(const struct brc_sim *sim, size_t body, double k
     add_stiffness(&sim->platens, body, k);
 }
 
+/* All three moments are made equal: a scaled moment has no geometry behind it, and equal ones turn
+ * exactly. terms are filled for every body, since exact sums count all of them. */
 void brc_mass_scaling_update(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -79,7 +84,8 @@ void brc_mass_scaling_update(struct brc_sim *sim)
     account(sim);
 }
 
-/* Mean stiffness of the springs that act, or may soon; 0: there are none. */
+/* Mean stiffness of the springs that act, or may soon; 0: there are none. Of all, not of the
+ * nearest: a loose grain may fall on any of them. */
 static int mean_stiffness(struct brc_sim *sim, double *k)
 {
     struct brc_springs springs = {0};

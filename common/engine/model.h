@@ -24,8 +24,7 @@ struct brc_model {
     unsigned flags;
     int point_lanes; /* ranges of points begin at its multiples, padded with zeros; 0 counts as 1 */
 
-    /* --- required ------------------------------------------------------------------------------
-     */
+    /* --- required --- */
 
     /* Geometry, mass and inertia of the grains: fills sim->bodies x, q, true_mass, true_inertia,
      * volume, reach and the model's body fields for the grains. Called once. */
@@ -49,29 +48,28 @@ struct brc_model {
     /* Springs that act now, linearised, for the stable time step. */
     int (*springs)(const struct brc_sim *sim, const void *state, struct brc_springs *out);
 
-    /* --- optional, with a default ----------------------------------------------------------------
-     */
+    /* --- optional: NULL where the model has none --- */
 
     /* Judges parameters and specimen together; allocates nothing; names the parameter that is
-     * wrong. Default: accepts. */
+     * wrong. */
     int (*check)(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen);
-    /* Private memory in *state. Default: none. free accepts a half-built state and NULL. */
+    /* Private memory in *state. free accepts a half-built state and NULL. */
     int (*create)(struct brc_sim *sim, void **state);
     void (*free)(void *state);
-    /* Parameters or options changed: choose the specialised loop. Default: nothing. */
+    /* Parameters or options changed: choose the specialised loop. */
     void (*select)(struct brc_sim *sim, void *state);
     /* The step had crack events with numbers from first on: candidates for those pairs and the
-     * like. Default: nothing. */
+     * like. */
     int (*after_break)(struct brc_sim *sim, void *state, size_t first);
-    /* A loaded state has replaced all fields: derive private memory again. Default: nothing. */
+    /* A loaded state has replaced all fields: derive private memory again. */
     int (*restore)(struct brc_sim *sim, void *state);
     /* Fields that hold nothing in this model, in the tables of bodies, pairs and platens and those
-     * of their points: names with spaces between. They are not saved. Default: none. */
+     * of their points: names with spaces between. They are not saved. */
     const char *no_bodies, *no_pairs, *no_platens;
     /* Part of the tensile strength of an intact bond (row of sim->pairs) that is left, in [0, 1]:
-     * tells what holds together. Default: 1. */
+     * tells what holds together. None: all of it. */
     double (*strength_left)(const struct brc_sim *sim, const void *state, size_t row);
-    /* One paragraph for the run header: readings chosen, derived stiffness. Default: empty. */
+    /* One paragraph for the run header: readings chosen, derived stiffness. */
     void (*describe)(const struct brc_sim *sim, const void *state, char *text, size_t size);
 };
 
@@ -79,8 +77,7 @@ struct brc_model {
 int brc_registry_count(void);
 const struct brc_model *brc_registry_at(int i);
 const struct brc_model *brc_registry_find(const char *name);
-/* Checks the required operations of a model and returns a copy with the defaults filled in. */
-int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
-                       struct brc_model *complete);
+/* An internal error that names the first required operation which a model lacks. */
+int brc_model_check(struct brc_context *ctx, const struct brc_model *model);
 
 #endif

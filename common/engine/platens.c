@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which boundary facets face which platen. Models call it once, as they open contacts; it knows the
- * specimen and the platens, no test and no model. */
+/* Which boundary facets face which platen, and the forces and work of platens. Models call the
+ * search once, as they open contacts; the rest is sim.c's. It knows the specimen and the platens,
+ * no test and no model: that a search stands here once is why a new test changes no model. */
 #include "common/engine/platens.h"
 
 #include "common/base/grow.h"
@@ -17,6 +18,8 @@ static const double FACING = 0.86602540378443864676;
  * digits of a tessellation read from a file allow. */
 static const double ON_PLATEN = 1e-6;
 
+/* By the lanes' function, so that the surface of a platen has one formula: a scalar twin would
+ * differ in the last bit somewhere. */
 bool brc_platen_height(const struct brc_platen *p, const double at[3], const double x[3], double *h,
                        double n[3])
 {
@@ -30,6 +33,7 @@ bool brc_platen_height(const struct brc_platen *p, const double at[3], const dou
     return is_there;
 }
 
+/* By grain first: models walk over grains, and rows of contacts are sorted so. */
 static int compare(const void *p, const void *q)
 {
     const struct brc_facing *a = p, *b = q;
@@ -75,6 +79,7 @@ int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_
     return 0;
 }
 
+/* Along the normal, of the platen on the specimen: the body has the sum on itself. */
 static double force_of(const struct brc_sim *sim, const struct brc_platen *p)
 {
     return -brc_dot(sim->bodies.f[p->body], p->n);

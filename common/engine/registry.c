@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table checks, defaults and lookup of the models by name. */
+/* The models that were linked in, by number and name, and what each must have. An operation that a
+ * model leaves out is NULL, and whoever would call it looks first: a function that does nothing
+ * would be a second way to say the same. */
 #include "common/engine/model.h"
 
 #include <string.h>
@@ -32,82 +34,17 @@ const struct brc_model *brc_registry_find(const char *name)
     return NULL;
 }
 
-static int accept(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen)
+int brc_model_check(struct brc_context *ctx, const struct brc_model *m)
 {
-    (void)ctx, (void)params, (void)specimen;
-    return 0;
-}
-
-static int create_nothing(struct brc_sim *sim, void **state)
-{
-    (void)sim;
-    *state = NULL;
-    return 0;
-}
-
-static void free_nothing(void *state)
-{
-    (void)state;
-}
-
-static void select_nothing(struct brc_sim *sim, void *state)
-{
-    (void)sim, (void)state;
-}
-
-static int break_nothing(struct brc_sim *sim, void *state, size_t first)
-{
-    (void)sim, (void)state, (void)first;
-    return 0;
-}
-
-static int restore_nothing(struct brc_sim *sim, void *state)
-{
-    (void)sim, (void)state;
-    return 0;
-}
-
-static double whole_strength(const struct brc_sim *sim, const void *state, size_t row)
-{
-    (void)sim, (void)state, (void)row;
-    return 1;
-}
-
-static void describe_nothing(const struct brc_sim *sim, const void *state, char *text, size_t size)
-{
-    (void)sim, (void)state;
-    if (size > 0)
-        text[0] = '\0';
-}
-
-int brc_model_complete(struct brc_context *ctx, const struct brc_model *model,
-                       struct brc_model *complete)
-{
-    *complete = *model;
-#define REQUIRE(operation)                                                               \
-    if (!model->operation)                                                               \
-    BRC_FAIL(ctx, BRC_ERR_INTERNAL, "model %s lacks the required operation " #operation, \
-             model->name ? model->name : "(unnamed)")
-    REQUIRE(name);
-    REQUIRE(shape);
-    REQUIRE(bond);
-    REQUIRE(pairs);
-    REQUIRE(forces);
-    REQUIRE(platens);
-    REQUIRE(energy);
-    REQUIRE(springs);
-#undef REQUIRE
-#define DEFAULT(operation, function) \
-    if (!complete->operation)        \
-    complete->operation = function
-    DEFAULT(check, accept);
-    DEFAULT(create, create_nothing);
-    DEFAULT(free, free_nothing);
-    DEFAULT(select, select_nothing);
-    DEFAULT(after_break, break_nothing);
-    DEFAULT(restore, restore_nothing);
-    DEFAULT(strength_left, whole_strength);
-    DEFAULT(describe, describe_nothing);
-#undef DEFAULT
+    const struct {
+        const char *operation;
+        bool is_there;
+    } required[] = {{"name", m->name},     {"shape", m->shape},    {"bond", m->bond},
+                    {"pairs", m->pairs},   {"forces", m->forces},  {"platens", m->platens},
+                    {"energy", m->energy}, {"springs", m->springs}};
+    for (size_t i = 0; i < sizeof required / sizeof required[0]; i++)
+        if (!required[i].is_there)
+            BRC_FAIL(ctx, BRC_ERR_INTERNAL, "model %s lacks the required operation %s",
+                     m->name ? m->name : "(unnamed)", required[i].operation);
     return 0;
 }

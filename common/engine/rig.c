@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Memory of a test: parameters, curve, and the columns and scalars that its type declares. The
- * engine calls it; what a test does with them is in common/rigs. */
+ * engine calls it; what a test does with them is in common/rigs. The type's columns and scalars are
+ * tables like all others, so saving, hashing and CSV files need no line for a new test. */
 #include "common/engine/rig.h"
 
 #include "common/engine/events.h"
@@ -12,6 +13,7 @@
 static const struct brc_field curve_fields[] = {BRC_CURVE_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
+/* A copy, since the case may be gone while the simulation runs. */
 static int copy_own(struct brc_context *ctx, struct brc_rig *rig, const void *own)
 {
     size_t size = rig->type->params.owner_size;
@@ -23,6 +25,8 @@ static int copy_own(struct brc_context *ctx, struct brc_rig *rig, const void *ow
     return 0;
 }
 
+/* A table that is wrong is a mistake in the source, but found here, as tests are written by others,
+ * too: before any work, with a message, in every build. */
 int brc_rig_check(struct brc_context *ctx, const struct brc_test *test)
 {
     const struct brc_rig_type *t = test->type;

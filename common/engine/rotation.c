@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Free rotation by symmetric splitting into rotations about the principal axes, each of which is
+ * exact: the angular momentum in space is kept to round-off, whatever the step. The order of the
+ * axes, 1-2-3-2-1, was the best one on the torque-free top (tests/converge/test_top.c). */
 #include "common/engine/rotation.h"
 
 #include "common/geometry/vec.h"
 
-/* Turns q and the body-frame angular momentum by the free rotation about one principal axis. */
+/* Turns q and the body-frame angular momentum by the free rotation about one principal axis. Sine
+ * and cosine of the whole angle come from those of the half one, which the quaternion needs anyway.
+ */
 static void rotate_axis(double q[4], double lb[3], int axis, double inertia, double dt)
 {
     int j = (axis + 1) % 3, k = (axis + 2) % 3;

@@ -1,6 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The step: what is done in it, in which order, and what a simulation is made of before the first
+ * one. Called by runs and by tests; it knows models and tests through their tables only (model.h,
+ * rig.h), and neither files nor cases.
+ *
+ * The order of a step is that of docs/numerics.md: drift, neighbour search, forces, platens, masses
+ * or time step, kick. Whatever feeds back into the motion hangs on global numbers alone: forces are
+ * added in the order of the rows, sums over bodies are exact. So neither threads, nor the history
+ * of the neighbour lists, nor a restart change a bit. */
 #include "common/engine/sim.h"
 
+#include "common/base/invariant.h"
 #include "common/engine/blowup.h"
 #include "common/engine/integrate.h"
 #include "common/engine/mass_scaling.h"
@@ -16,22 +25,30 @@ static const struct brc_param run_params[] = {BRC_PARAM_LIST(BRC_RUN_PARAMS)};
 const struct brc_param_list brc_run_param_list = BRC_PARAMS(run_params, struct brc_run_params);
 
 #define SIM_RENAMED(type, name, in_files, unit, meaning) \
-    {#in_files, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, name)},
+    {#in_files, BRC_TYPE_OF(type), 1, BRC_STATE, unit, meaning, offsetof(struct brc_sim, name)},
 #define SIM_SCALAR(type, name, unit, meaning) SIM_RENAMED(type, name, name, unit, meaning)
 #define RIG_RENAMED(type, name, in_files, unit, meaning) \
-    {"rig_" #in_files, BRC_TYPE_OF(type), unit, meaning, offsetof(struct brc_sim, rig.name)},
+    {"rig_" #in_files,                                   \
+     BRC_TYPE_OF(type),                                  \
+     1,                                                  \
+     BRC_STATE,                                          \
+     unit,                                               \
+     meaning,                                            \
+     offsetof(struct brc_sim, rig.name)},
 #define RIG_SCALAR(type, name, unit, meaning) RIG_RENAMED(type, name, name, unit, meaning)
 #define LEDGER_SCALAR(name, sign, meaning) \
-    {"energy_" #name, BRC_F64, "J", meaning, offsetof(struct brc_sim, ledger.name)},
-const struct brc_scalar brc_sim_scalars[] = {
+    {"energy_" #name, BRC_F64, 1, BRC_STATE, "J", meaning, offsetof(struct brc_sim, ledger.name)},
+static const struct brc_field sim_scalars[] = {
     BRC_SIM_SCALARS(SIM_SCALAR, SIM_RENAMED) BRC_RIG_SCALARS(RIG_SCALAR, RIG_RENAMED)
-        BRC_LEDGER_TERMS(LEDGER_SCALAR){"energy_start", BRC_F64, "J", "energy at the start",
-                                        offsetof(struct brc_sim, ledger.start)}};
-const int brc_sim_n_scalars = (int)(sizeof brc_sim_scalars / sizeof brc_sim_scalars[0]);
+        BRC_LEDGER_TERMS(LEDGER_SCALAR) LEDGER_SCALAR(start, 0, "energy at the start")};
+const struct brc_fieldset brc_sim_scalars = BRC_FIELDSET(sim_scalars, struct brc_sim);
 
-/* steps between two looks at the memory that moved point ranges have left behind */
+/* Steps between two looks at the memory that moved ranges of points have left behind: often enough
+ * for a burst of contacts, too seldom to be seen in the time of a step. */
 enum { TIDY_STEPS = 100 };
-/* growth of the largest sum k / m that calls for a new estimate */
+/* Growth of the largest sum k / m that calls for a new estimate of the limit. A power iteration
+ * costs as much as many steps; the default dt_margin of 0.5 bears a limit that has fallen by 2.5 %
+ * in between. */
 static const double LIMIT_GROWTH = 1.05;
 /* growth of all masses that calls for another look at the eigenfrequencies of small ones: masses
  * grow where contacts are new or stiffer, and where bonds break the frequencies only fall */
@@ -66,7 +83,10 @@ static void add_rows(const struct brc_contacts *c, double (*f)[3], double (*t)[3
     }
 }
 
-/* The same for rows of platens, whose own sums are over many grains, which ranks will share. */
+/* The same for rows of platens. The sum on a grain has one term a platen; that on a platen has one
+ * a grain of a whole face, which ranks will share, and it drives the loading: so it is exact. One
+ * column at a time, since exact sums take their terms side by side and `terms` has room for one a
+ * body; there are few rows, so twelve passes over them do not count. */
 static void add_platen_rows(struct brc_sim *sim)
 {
     const struct brc_contacts *c = &sim->platens;
@@ -77,18 +97,18 @@ static void add_platen_rows(struct brc_sim *sim)
     }
     for (size_t p = b->n_grains; p < b->n; p++)
         for (int k = 0; k < 6; k++) {
+            const double(*part)[3] = (const double(*)[3])(k < 3 ? c->f : c->tb);
+            double *sum = k < 3 ? b->f[p] : b->t[p];
             size_t n = 0;
             for (size_t row = 0; row < c->n; row++)
                 if ((size_t)c->b[row] == p)
-                    b->terms[n++] = k < 3 ? c->f[row][k] : c->tb[row][k - 3];
-            double sum = brc_sum_exact_of(b->terms, n, b->n_grains);
-            if (k < 3)
-                b->f[p][k] += sum;
-            else
-                b->t[p][k - 3] += sum;
+                    b->terms[n++] = part[row][k % 3];
+            sum[k % 3] += brc_sum_exact_of(b->terms, n, b->n_grains);
         }
 }
 
+/* Weight, then contacts. A model that ADDS has left its sums in `sum`, in the same order of rows
+ * (model.h). */
 static void gather(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -106,6 +126,8 @@ static void gather(struct brc_sim *sim)
     add_platen_rows(sim);
 }
 
+/* Every grain against every platen: there are at most BRC_MAX_PLATENS, so a grid would save
+ * nothing. */
 int brc_sim_near_platens(const struct brc_sim *sim, struct brc_neighbours *out)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -121,6 +143,8 @@ int brc_sim_near_platens(const struct brc_sim *sim, struct brc_neighbours *out)
     return 0;
 }
 
+/* Both lists anew, then the model's rows. From here on the paths of the bodies count for the skin.
+ */
 static int rebuild_neighbours(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -137,7 +161,9 @@ static int rebuild_neighbours(struct brc_sim *sim)
     return code;
 }
 
-/* The candidate list holds while no two bodies have come nearer by more than the skin. */
+/* The neighbour list holds while no two bodies have come nearer by more than the skin, so for one
+ * that has moved by half of it. All bodies are looked at in each step, as the search for what is no
+ * number needs that anyway. */
 static int check_path(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -151,7 +177,8 @@ static int check_path(struct brc_sim *sim)
     return stale ? rebuild_neighbours(sim) : 0;
 }
 
-/* Largest sum k / m over the bodies: grows when the stable limit may have fallen. */
+/* Largest sum k / m over the bodies, translation and rotation: a cheap quantity that grows whenever
+ * the stable limit may have fallen. */
 static double stiffness_bound(const struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -166,7 +193,8 @@ static double stiffness_bound(const struct brc_sim *sim)
     return bound;
 }
 
-/* Dynamic regime: the step that goes with the limit. */
+/* Dynamic regime: the step that goes with the limit. An automatic step only ever falls: a step that
+ * grew again would make the work of a run hang on how often the limit is estimated. */
 static int choose_dt(struct brc_sim *sim)
 {
     if (sim->run.dt > sim->dt_limit)
@@ -197,8 +225,10 @@ static int update_dt(struct brc_sim *sim, bool is_listed)
     return choose_dt(sim);
 }
 
-/* Quasi-static regime: masses grow with the stiffness. Those below what is safe for every network
- * are held against the largest eigenfrequency of the present one. */
+/* Quasi-static regime: masses grow with the stiffness, and 1.2 times the bound of eq 26 is stable
+ * for every network (proof in docs/numerics.md). A smaller margin is the user's choice: it is held
+ * against the largest eigenfrequency of the present network, which costs an iteration, so only
+ * where masses have grown. */
 static int update_masses(struct brc_sim *sim, bool is_listed)
 {
     double margin = sim->run.mass_margin, mass;
@@ -222,7 +252,8 @@ static int update_masses(struct brc_sim *sim, bool is_listed)
 }
 
 /* Masses (quasi-static) or time step (dynamic) follow the stiffness of the contacts from the first
- * step on in which it has changed. */
+ * step on in which it has changed. Models count its changes (k_version), so that a step in which
+ * nothing changed pays for two comparisons. */
 static int follow_stiffness(struct brc_sim *sim, bool is_listed)
 {
     bool is_same =
@@ -254,7 +285,8 @@ static double mean_grain_radius(const struct brc_sim *sim)
     return cbrt(volume / (double)f->n_cells * 3 / (4 * BRC_PI));
 }
 
-/* Scaled masses know nothing of the true ones. */
+/* Only the dynamic regime has true masses; scaled ones begin at zero and grow to what the first
+ * contacts need, so that without gravity the density changes no bit. */
 static void start_masses(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -264,12 +296,15 @@ static void start_masses(struct brc_sim *sim)
     }
 }
 
-/* Grains, contacts and candidates; then the model's choice of loops. */
+/* Grains, platens, contacts and candidates, then the model's choice of loops. In this order: a test
+ * places platens by the grains' extent, a model bonds with the platens that are there, and the
+ * search leaves the rows that bonding has opened. */
 static int build(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
     sim->skin = sim->run.skin * mean_grain_radius(sim);
-    BRC_TRY(sim->model.create(sim, &sim->state));
+    if (sim->model.create)
+        BRC_TRY(sim->model.create(sim, &sim->state));
     BRC_TRY(sim->model.shape(sim, sim->state));
     for (size_t i = 0; i < b->n_grains; i++) {
         brc_copy(b->x0[i], b->x[i]);
@@ -279,11 +314,15 @@ static int build(struct brc_sim *sim)
     start_masses(sim);
     BRC_TRY(sim->model.bond(sim, sim->state));
     BRC_TRY(rebuild_neighbours(sim));
-    sim->model.select(sim, sim->state);
+    if (sim->model.select)
+        sim->model.select(sim, sim->state);
     return 0;
 }
 
-/* Forces at rest, masses or time step, and the first half kick. */
+/* Forces at rest, masses or time step, and the first half kick. Velocities are given for the time
+ * of the positions: half a kick backwards and a whole one forwards make them those of the half
+ * steps, without damping on the way back, which would be a gain of energy. The ledger begins after
+ * all that. */
 static int start(struct brc_sim *sim)
 {
     double stored[3];
@@ -331,7 +370,8 @@ static void leave_out(struct brc_contacts *c, const char *names)
     brc_table_leave_out(&c->points, names);
 }
 
-/* Tables of all parts of the state: rows for the bodies, none of the others. */
+/* Tables of all parts of the state. What a model declares as empty is left out of files and hashes
+ * here, once, and stays in memory, since the loops of `engine` serve all models. */
 static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
 {
     const struct brc_model *m = &sim->model;
@@ -347,53 +387,59 @@ static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
     return 0;
 }
 
+/* What an empty simulation has: the model, the test and tables without a row. */
+static int begin(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
+                 const struct brc_test *test, size_t n_grains)
+{
+    *sim = (struct brc_sim){.ctx = ctx, .model = *model};
+    brc_events_init(&sim->events);
+    BRC_TRY(brc_model_check(ctx, model));
+    BRC_TRY(brc_rig_create(ctx, &sim->rig, test));
+    return make_tables(sim, n_grains, (size_t)test->type->n_platens);
+}
+
 int brc_sim_tables(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model)
 {
-    memset(sim, 0, sizeof *sim);
-    sim->ctx = ctx;
-    brc_events_init(&sim->events);
     static const struct brc_rig_type no_test = {0};
     static const struct brc_test_params no_params = {0};
     const struct brc_test test = {.type = &no_test, .params = &no_params};
-    int code = brc_model_complete(ctx, model, &sim->model);
-    if (code == 0)
-        code = brc_rig_create(ctx, &sim->rig, &test);
-    if (code == 0)
-        code = make_tables(sim, 0, 0);
+    int code = begin(ctx, sim, model, &test, 0);
     if (code != 0)
         brc_sim_free(sim);
     return code;
+}
+
+/* What a simulation has besides: everything that may call the model or the test. */
+static int create(struct brc_sim *sim, const void *params, const struct brc_specimen *specimen,
+                  const struct brc_run_params *run)
+{
+    size_t size = sim->model.params.owner_size;
+    sim->specimen = specimen;
+    sim->run = *run;
+    choose_damped(sim);
+    sim->params = brc_alloc(sim->ctx, 1, size);
+    if (!sim->params)
+        return BRC_ERR_MEMORY;
+    if (size > 0)
+        memcpy(sim->params, params, size);
+    if (sim->model.point_lanes > 0)
+        sim->pairs.lanes = sim->platens.lanes = sim->model.point_lanes;
+    BRC_TRY(build(sim));
+    return start(sim);
 }
 
 int brc_sim_create(struct brc_context *ctx, struct brc_sim *sim, const struct brc_model *model,
                    const void *params, const struct brc_specimen *specimen,
                    const struct brc_test *test, const struct brc_run_params *run)
 {
-    memset(sim, 0, sizeof *sim);
-    sim->ctx = ctx;
-    sim->specimen = specimen;
-    sim->run = *run;
-    brc_events_init(&sim->events);
+    *sim = (struct brc_sim){0};
     BRC_TRY(brc_simd_check(ctx, run->simd));
-    BRC_TRY(brc_model_complete(ctx, model, &sim->model));
-    BRC_TRY(sim->model.check(ctx, params, specimen));
+    if (model->check)
+        BRC_TRY(model->check(ctx, params, specimen));
     BRC_TRY(brc_rig_check(ctx, test));
-    const struct brc_model *m = &sim->model;
-    size_t n_grains = specimen->facets.n_cells, n_platens = (size_t)test->type->n_platens;
-    sim->params = brc_alloc(ctx, 1, m->params.owner_size);
-    int code = sim->params ? brc_rig_create(ctx, &sim->rig, test) : BRC_ERR_MEMORY;
+    int code = begin(ctx, sim, model, test, specimen->facets.n_cells);
     if (code == 0)
-        choose_damped(sim);
-    if (code == 0 && m->params.owner_size > 0)
-        memcpy(sim->params, params, m->params.owner_size);
-    if (code == 0)
-        code = make_tables(sim, n_grains, n_platens);
-    if (code == 0 && m->point_lanes > 0)
-        sim->pairs.lanes = sim->platens.lanes = m->point_lanes;
-    if (code == 0)
-        code = build(sim);
-    if (code == 0)
-        code = start(sim);
+        code = create(sim, params, specimen, run);
     if (code != 0)
         brc_sim_free(sim);
     return code;
@@ -412,7 +458,8 @@ void brc_sim_free(struct brc_sim *sim)
     memset(sim, 0, sizeof *sim);
 }
 
-/* Work of gravity over the drift that has just been made. */
+/* Work of gravity over the drift that has just been made. It is booked apart from the forces of
+ * contacts, as it is exact: the weight does not change over a step. */
 static void add_gravity_work(struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
@@ -426,8 +473,9 @@ static void add_gravity_work(struct brc_sim *sim)
 int brc_sim_step(struct brc_sim *sim)
 {
     size_t events = sim->events.table.n;
-    int64_t listings = sim->n_rebuilds;
+    int64_t rebuilds = sim->n_rebuilds;
     double dt_before = sim->dt;
+    BRC_ASSERT(sim->dt > 0 && sim->ctx->code == 0);
     brc_integrate_drift(sim);
     sim->ledger.local_damping += sim->damping_ahead;
     add_gravity_work(sim);
@@ -436,13 +484,16 @@ int brc_sim_step(struct brc_sim *sim)
     BRC_TRY(check_path(sim));
     brc_sim_forces(sim);
     BRC_TRY(sim->ctx->code);
+    /* rows are opened and closed by `pairs` and `after_break` alone, events only added */
+    BRC_ASSERT(sim->pairs.n == sim->pairs.table.n && sim->platens.n == sim->platens.table.n);
+    BRC_ASSERT(sim->events.table.n >= events);
     brc_platens_measure(sim);
     BRC_TRY(sim->rig.type->drive(sim));
-    BRC_TRY(follow_stiffness(sim, sim->n_rebuilds > listings));
+    BRC_TRY(follow_stiffness(sim, sim->n_rebuilds > rebuilds));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
         return brc_blowup_number(sim);
-    if (BRC_OPTION(sim->events.table.n > events))
+    if (BRC_OPTION(sim->events.table.n > events) && sim->model.after_break)
         BRC_TRY(sim->model.after_break(sim, sim->state, events));
     if (sim->step % TIDY_STEPS == 0) {
         BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->pairs));
@@ -461,11 +512,15 @@ int brc_sim_restore(struct brc_sim *sim)
     for (size_t i = 0; i < sim->events.table.n; i++)
         sim->events.count[sim->events.mode[i]]++;
     brc_platens_restore(sim);
-    BRC_TRY(sim->model.restore(sim, sim->state));
-    sim->model.select(sim, sim->state);
+    if (sim->model.restore)
+        BRC_TRY(sim->model.restore(sim, sim->state));
+    if (sim->model.select)
+        sim->model.select(sim, sim->state);
     return 0;
 }
 
+/* Over all that is saved and nothing else, so that a state that is read back has the hash it was
+ * saved with. Point ranges count as they follow each other, wherever they lie in memory. */
 uint64_t brc_sim_hash(const struct brc_sim *sim)
 {
     uint64_t hash = brc_table_hash(&sim->bodies.table, BRC_HASH_SEED);
@@ -478,8 +533,8 @@ uint64_t brc_sim_hash(const struct brc_sim *sim)
         hash = brc_table_hash(&sim->rig.curve.own, hash);
     if (sim->rig.own_state.set.n > 0)
         hash = brc_table_hash(&sim->rig.own_state, hash);
-    for (int i = 0; i < brc_sim_n_scalars; i++)
-        hash = brc_hash_bytes((const char *)sim + brc_sim_scalars[i].offset,
-                              brc_type_size(brc_sim_scalars[i].type), hash);
+    for (int i = 0; i < brc_sim_scalars.n; i++)
+        hash = brc_hash_bytes((const char *)sim + sim_scalars[i].offset,
+                              brc_field_size(&sim_scalars[i]), hash);
     return hash;
 }

@@ -77,7 +77,7 @@ extern const struct brc_param_list brc_run_param_list;
 
 struct brc_sim {
     struct brc_context *ctx;
-    struct brc_model model; /* complete: every operation is set */
+    struct brc_model model; /* a copy, so that tests may spoil one operation */
     void *params;           /* the model's parameter struct; owned */
     void *state;            /* the model's private memory */
     const struct brc_specimen *specimen;
@@ -96,16 +96,9 @@ struct brc_sim {
     int64_t k_seen[2];     /* k_version of pairs and platens when dt or masses were last set */
 };
 
-/* A scalar of struct brc_sim (ledger and rig included) by its offset. */
-struct brc_scalar {
-    const char *name;
-    enum brc_type type;
-    const char *unit;
-    const char *meaning;
-    size_t offset;
-};
-extern const struct brc_scalar brc_sim_scalars[];
-extern const int brc_sim_n_scalars;
+/* The scalars of clock, rig and ledger as fields of one row, which is struct brc_sim itself: what
+ * saves and compares tables serves them, too. */
+extern const struct brc_fieldset brc_sim_scalars;
 
 /* Builds bodies, platens, contacts and the first forces. params is the model's filled parameter
  * struct (copied); specimen must outlive the simulation. Nothing is left behind on failure. */

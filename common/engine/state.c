@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The list of what is saved. Paths are the groups of state files, so they stay as they are whatever
+ * the structs are called. A test without columns or scalars of its own has no group for them: an
+ * empty one would change the files of all tests that came before. */
 #include "common/engine/state.h"
 
 static void add_table(struct brc_state *s, const char *path, struct brc_table *table, bool is_fixed)
@@ -7,27 +10,11 @@ static void add_table(struct brc_state *s, const char *path, struct brc_table *t
         .path = path, .set = table->set, .table = table, .n = table->n, .is_fixed = is_fixed};
 }
 
-/* The declared scalars of the simulation, seen as one row of a struct. */
-static void add_scalars(struct brc_state *s, struct brc_sim *sim)
-{
-    int n = brc_sim_n_scalars < BRC_STATE_MAX_SCALARS ? brc_sim_n_scalars : BRC_STATE_MAX_SCALARS;
-    for (int i = 0; i < n; i++) {
-        const struct brc_scalar *scalar = &brc_sim_scalars[i];
-        s->scalars[i] =
-            (struct brc_field){scalar->name,    scalar->type,  1, BRC_STATE, scalar->unit,
-                               scalar->meaning, scalar->offset};
-    }
-    s->part[s->n++] = (struct brc_state_part){.path = "scalars",
-                                              .set = {s->scalars, n, sizeof *sim},
-                                              .base = sim,
-                                              .n = 1,
-                                              .is_fixed = true};
-}
-
 void brc_state_list(struct brc_sim *sim, struct brc_state *state)
 {
     state->n = 0;
-    add_scalars(state, sim);
+    state->part[state->n++] = (struct brc_state_part){
+        .path = "scalars", .set = brc_sim_scalars, .base = sim, .n = 1, .is_fixed = true};
     add_table(state, "bodies", &sim->bodies.table, true);
     add_table(state, "bodies/model", &sim->bodies.model, true);
     add_table(state, "pairs", &sim->pairs.table, false);

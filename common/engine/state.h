@@ -16,16 +16,14 @@ struct brc_state_part {
     bool is_fixed; /* the case decides the number of rows; else it is loaded */
 };
 
-enum { BRC_STATE_MAX_PARTS = 16, BRC_STATE_MAX_SCALARS = 64 };
+enum { BRC_STATE_MAX_PARTS = 16 };
 
 struct brc_state {
     int n;
     struct brc_state_part part[BRC_STATE_MAX_PARTS];
-    struct brc_field scalars[BRC_STATE_MAX_SCALARS];
 };
 
-/* Lists the parts as they are now; n of a part is valid until its table changes. The list points
- * into itself: do not copy it. */
+/* Lists the parts as they are now; n of a part is valid until its table changes. */
 void brc_state_list(struct brc_sim *sim, struct brc_state *state);
 /* Address of the values of a field in a row. */
 void *brc_state_value(const struct brc_state_part *part, int field, size_t row);

@@ -164,17 +164,6 @@ void brc_output_cell(FILE *out, const char *text)
     fputc('"', out);
 }
 
-static void csv_value(FILE *out, const struct brc_field *f, const void *column, size_t k)
-{
-    if (f->type == BRC_F64)
-        fprintf(out, "%.17g", ((const double *)column)[k]);
-    else
-        fprintf(out, "%" PRId64,
-                f->type == BRC_I64   ? ((const int64_t *)column)[k]
-                : f->type == BRC_I32 ? ((const int32_t *)column)[k]
-                                     : ((const uint8_t *)column)[k]);
-}
-
 /* One line: the values of a row, or the names of the columns. Names are quoted as any text, since a
  * unit may hold a comma ("N, N m"). */
 static void csv_line(FILE *out, const struct brc_table *t, size_t row, const char **comma)
@@ -187,7 +176,7 @@ static void csv_line(FILE *out, const struct brc_table *t, size_t row, const cha
             fputs(*comma, out);
             *comma = ",";
             if (row != HEADER) {
-                csv_value(out, f, brc_table_column(t, i), row * (size_t)width + (size_t)j);
+                fprintf(out, "%.17g", brc_table_number(t, i, row * (size_t)width + (size_t)j));
                 continue;
             }
             if (width == 1)

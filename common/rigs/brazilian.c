@@ -10,13 +10,6 @@ static const struct brc_quantity quantities[] = {
      "stiffness of the disc: force per thickness at half the strain of the peak, over it"},
     BRC_PEAK_QUANTITIES};
 
-static int check(struct brc_context *ctx, const struct brc_test_params *test, const void *own)
-{
-    (void)own;
-    BRC_TRY(brc_two_platens_check(ctx, test));
-    return brc_loading_check(ctx, test);
-}
-
 static double thickness(const struct brc_sim *sim)
 {
     double low[3], high[3];
@@ -73,11 +66,8 @@ const struct brc_rig_type brc_rig_brazilian = {.name = "brazilian",
                                                "friction plate_width",
                                                .quantities = quantities,
                                                .n_quantities = 1 + BRC_N_PEAK_RESULTS,
-                                               .n_platens = 2,
-                                               .view = &view,
-                                               .check = check,
-                                               .place = place,
-                                               .drive = brc_two_platens_drive,
-                                               .measure = brc_curve_sample,
                                                .results = results,
-                                               .field = brc_two_platens_field};
+                                               BRC_TWO_PLATENS,
+                                               .view = &view,
+                                               .check = brc_two_platens_check_closing,
+                                               .place = place};

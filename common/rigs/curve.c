@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of the curve, and what is read off its peak. Tests call it at the end of each step. A row
+ * holds means over the steps since the last one, since the force of a single step is noisy and a
+ * peak must not be an accident of it. */
 #include "common/rigs/curve.h"
 
 #include "common/engine/sim.h"
@@ -10,7 +13,8 @@ static const char no_row[] = "no row of the curve: fewer steps than test.sample_
                   no_load[] = "no load in the sense of the test";
 const char brc_curve_no_peak[] =
     "no peak: the load was still rising, or above 0.95 of the largest, at the end";
-/* A largest load is a peak once the load has been below this part of it. */
+/* A largest load is a peak once the load has been below this part of it: a run that ends on the way
+ * up has no strength, and a result that says otherwise would be too low without a sign of it. */
 static const double FALLEN = 0.95;
 
 static int add_row(struct brc_sim *sim)
@@ -52,6 +56,8 @@ int brc_curve_sample(struct brc_sim *sim)
     return sim->step % sim->rig.params.sample_steps == 0 ? add_row(sim) : 0;
 }
 
+/* From a tenth of the peak on, since at the start there is hardly a contact force to compare with;
+ * up to the peak, since a collapse is out of balance by nature. */
 double brc_curve_unbalanced_max(const struct brc_sim *sim)
 {
     const struct brc_curve *c = &sim->rig.curve;

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Moduli as a laboratory reads them: slopes of the curve between two parts of its peak, on the way
+ * up. A value that cannot be measured has a note that says what to change. Called by tests at their
+ * end; it reads the curve and whether there is a gauge. */
 #include "common/rigs/elastic_moduli.h"
 
 #include "common/engine/sim.h"
-#include "common/rigs/curve.h"
 
 #include <gsl/gsl_fit.h>
 #include <math.h>
@@ -14,6 +16,12 @@ static const char no_gauge[] = "fewer than 4 grains in the gauge, or all close t
                   no_rows[] = "fewer than 2 rows of the curve from test.modulus_low to "
                               "test.modulus_high: lower test.sample_steps or load more slowly";
 
+const struct brc_quantity brc_core_quantities[BRC_N_CORE_RESULTS] = {
+    {"E", "Pa", "Young's modulus by the gauge strain"},
+    {"nu", "1", "Poisson's ratio by the gauge strains"},
+    {"E_platen", "Pa", "modulus by the platen strain"},
+    BRC_PEAK_QUANTITIES};
+
 int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *t)
 {
     if (t->modulus_low < t->modulus_high)
@@ -22,7 +30,8 @@ int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *t)
              t->modulus_low, t->modulus_high);
 }
 
-/* Rows between the two parts of the peak, on the way up: [*first, *end). */
+/* Rows between the two parts of the peak, on the way up: [*first, *end). By the force and not by
+ * the strain, as the elastic part of a specimen ends at a part of its strength. */
 static void modulus_rows(const struct brc_rig *rig, size_t *first, size_t *end)
 {
     const struct brc_curve *c = &rig->curve;
@@ -48,7 +57,9 @@ static struct brc_measured measured(double value, const char *note)
     return (struct brc_measured){note ? NAN : value, note};
 }
 
-void brc_moduli_results(const struct brc_sim *sim, struct brc_measured *out)
+/* A load that has not fallen yet leaves moduli measurable: the parts are then of the largest load
+ * so far. */
+void brc_core_results(const struct brc_sim *sim, struct brc_measured *out)
 {
     const struct brc_rig *rig = &sim->rig;
     const struct brc_curve *c = &rig->curve;
@@ -66,4 +77,5 @@ void brc_moduli_results(const struct brc_sim *sim, struct brc_measured *out)
     out[1] = measured(lateral ? NAN : -slope(strain, c->strain_lateral + first, k),
                       lateral); /* eq:gt12:24 */
     out[2] = measured(rows ? NAN : slope(c->strain + first, stress, k), rows);
+    brc_curve_peak_results(sim, out + BRC_N_MODULI);
 }

@@ -3,21 +3,20 @@
 #ifndef BRC_ELASTIC_MODULI_H
 #define BRC_ELASTIC_MODULI_H
 
-#include "common/engine/rig.h"
+#include "common/rigs/curve.h"
 
 /* Shared keys that moduli use. */
 #define BRC_MODULI_KEYS "modulus_low modulus_high "
-/* What is measured, to stand in a test's list. */
-#define BRC_MODULI_QUANTITIES                                \
-    {"E", "Pa", "Young's modulus by the gauge strain"},      \
-        {"nu", "1", "Poisson's ratio by the gauge strains"}, \
-    {                                                        \
-        "E_platen", "Pa", "modulus by the platen strain"     \
-    }
-enum { BRC_N_MODULI = 3 };
+/* The same for all loads along a core's axis: moduli, then the peak. */
+enum { BRC_N_MODULI = 3, BRC_N_CORE_RESULTS = BRC_N_MODULI + BRC_N_PEAK_RESULTS };
+extern const struct brc_quantity brc_core_quantities[BRC_N_CORE_RESULTS];
+void brc_core_results(const struct brc_sim *sim, struct brc_measured *out);
+/* To stand in a test's table. */
+#define BRC_CORE_RESULTS                                                   \
+    .quantities = brc_core_quantities, .n_quantities = BRC_N_CORE_RESULTS, \
+    .results = brc_core_results, .sides = BRC_CORE_SIDES
 
+/* The keys of the moduli together. */
 int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *test);
-/* The values of BRC_MODULI_QUANTITIES. */
-void brc_moduli_results(const struct brc_sim *sim, struct brc_measured *out);
 
 #endif

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The strain of the middle of the specimen by the centres of its grains, as a strain gauge sees it:
+ * the ends are held or rubbed by the platens. A slope over all grains of the gauge rather than the
+ * distance of two, since single grains turn and slip. Called as a test begins, and for each row of
+ * its curve. */
 #include "common/rigs/gauge.h"
 
 #include "common/engine/sim.h"
@@ -43,7 +47,8 @@ static void check_axis(struct brc_sim *sim, int k)
     rig->has_gauge[k] = n >= GAUGE_GRAINS && sqrt(square / (double)n) >= GAUGE_SPREAD * width;
 }
 
-/* Sums over the gauge's grains of u and x u, of displacements and places along k. */
+/* Sums over the gauge's grains of u and x u, of displacements and places along k. Exact, as rows of
+ * the curve are part of the state; the others count as zeros. */
 static void sum_displacements(const struct brc_sim *sim, int k, double *u, double *xu)
 {
     const struct brc_bodies *b = &sim->bodies;

@@ -1,4 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rate of a test, step by step: one policy for all tests, with its constants. Its stages, what
+ * was tried, and what each constant was tuned against, are in docs/numerics.md (Loading) and
+ * docs/speed-and-error.md.
+ *
+ * All constants are in units of test.target, so that one number decides between speed and error.
+ * What it reads (strain, force, kinetic energy, unbalanced ratio) is summed exactly, as the rate
+ * feeds back into all that follows. */
 #include "common/rigs/loading.h"
 
 #include "common/base/lanes.h"
@@ -58,7 +65,8 @@ static brc_lanes sizes_of(double (*f)[3])
 }
 
 /* Sums of the sizes of the forces on the grains and of those of their contacts, each contact with
- * its first grain; *active: how many contacts have a force. */
+ * its first grain: the exact sum then has one term a grain, however many contacts there are.
+ * *active: how many contacts have a force. */
 static void sum_sizes(const struct brc_sim *sim, double *on_grains, double *of_contacts,
                       size_t *active)
 {
@@ -99,7 +107,9 @@ static bool is_steady(const struct brc_sim *sim)
     return is_calm || is_late || sim->events.table.n > 0;
 }
 
-/* Up to the onset of damage: what kinetic energy goes with a rate, and whether damage has begun. */
+/* Up to the onset of damage: what kinetic energy goes with a rate, and whether damage has begun.
+ * Shaking tells it, too, for models that soften before anything breaks; but not at the start, where
+ * the specimen still shakes from its first load. */
 static void watch_elastic(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -111,7 +121,8 @@ static void watch_elastic(struct brc_sim *sim)
         rig->strain_onset = rig->strain;
 }
 
-/* What was taken for the onset of damage was none: nothing has broken, and all is still. */
+/* What was taken for the onset of damage was none: nothing has broken, and all is still. Without it
+ * the rate would stay where the alarm was, far below the damage. */
 static bool was_false_alarm(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
@@ -223,6 +234,8 @@ bool brc_loading_is_done(const struct brc_sim *sim)
            rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
 }
 
+/* Avalanches only lengthen the way, so what is told is a least number of steps, which falls
+ * steadily. */
 double brc_loading_steps_left(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The tests that were linked in: the Makefile writes their list from the files of this folder, so
+ * that a new test is one file. Names become the choices of test.kind by the same list. */
 #include "common/rigs/rigs.h"
 
 #include "common/engine/sim.h"
@@ -48,6 +50,7 @@ struct brc_test brc_rigs_test(const struct brc_test_params *params, const void *
     return (struct brc_test){registered[params->kind], params, own};
 }
 
+/* By whole words, as one key may be a part of another (rate, rate_max). */
 bool brc_rigs_uses(const struct brc_rig_type *rig, const char *key)
 {
     size_t n = strlen(key);
@@ -63,6 +66,7 @@ bool brc_rigs_done(const struct brc_sim *sim)
     return type->is_done ? type->is_done(sim) : brc_loading_is_done(sim);
 }
 
+/* Broken contacts are counted for every test, whatever it measures. */
 int brc_rigs_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS])
 {
     static const char *const broken[BRC_N_MODES] = {"broken_tension", "broken_shear",

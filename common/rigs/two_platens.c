@@ -1,22 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two platens along an axis, moved alike by the loading: the whole mechanics of compression,
+ * tension and the Brazilian test, which differ in axis, sense, surface and bond alone. It knows the
+ * rig and the bodies, and no contact model. */
 #include "common/rigs/two_platens.h"
 
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
+#include "common/rigs/elastic_moduli.h"
 #include "common/rigs/gauge.h"
 
 static const double PLATENS_MEET = 1; /* strain */
 
-int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *t)
+int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *t, const void *own)
 {
-    if (t->strain_max < PLATENS_MEET)
-        return 0;
-    BRC_FAIL(ctx, BRC_ERR_INPUT,
-             "test.strain_max = %g: the platens meet at a strain of 1; allowed in compression and "
-             "in the Brazilian test (0, 1)",
-             t->strain_max);
+    (void)own;
+    BRC_TRY(brc_loading_check(ctx, t));
+    return brc_moduli_check(ctx, t);
 }
 
+int brc_two_platens_check_closing(struct brc_context *ctx, const struct brc_test_params *t,
+                                  const void *own)
+{
+    if (t->strain_max >= PLATENS_MEET)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "test.strain_max = %g: the platens meet at a strain of 1; allowed in compression "
+                 "and in the Brazilian test (0, 1)",
+                 t->strain_max);
+    return brc_two_platens_check(ctx, t, own);
+}
+
+/* The mean over the length, from the volume: a specimen with rough ends or a polygon for a circle
+ * has no one section. */
 double brc_two_platens_section(const struct brc_sim *sim, int axis)
 {
     double low[3], high[3];
@@ -24,7 +38,8 @@ double brc_two_platens_section(const struct brc_sim *sim, int axis)
     return sim->specimen->domain_volume / (high[axis] - low[axis]);
 }
 
-/* Each by half of the rate. */
+/* Each by half of the rate, so that the middle of the specimen stays where it is: gauge and grains
+ * then have no mean motion. */
 static void set_velocities(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -78,7 +93,8 @@ void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3])
     v[k] = -rig->sense * rig->rate * (sim->bodies.x0[grain][k] - middle);
 }
 
-/* Mean of the platens' forces, in the sense of the test. */
+/* Mean of the platens' forces, in the sense of the test. They differ while the specimen
+ * accelerates; curve and loading take the mean. */
 static void measure_load(struct brc_rig *rig)
 {
     double mean = 0;

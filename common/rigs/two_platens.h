@@ -18,8 +18,16 @@ int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double se
 int brc_two_platens_drive(struct brc_sim *sim);
 /* The field of a uniform strain about the middle of the specimen. */
 void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3]);
-/* Platens that approach meet at a strain of 1. */
-int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *test);
+/* Operations for `check`: the keys of loading and moduli together, where a test uses them; closing:
+ * platens that approach, too, meet at a strain of 1. */
+int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *test,
+                          const void *own);
+int brc_two_platens_check_closing(struct brc_context *ctx, const struct brc_test_params *test,
+                                  const void *own);
+/* What such a test has beside its place, check and results, to stand in its table. */
+#define BRC_TWO_PLATENS                                                          \
+    .n_platens = 2, .drive = brc_two_platens_drive, .measure = brc_curve_sample, \
+    .field = brc_two_platens_field
 /* Mean area of the specimen across an axis [m2]. */
 double brc_two_platens_section(const struct brc_sim *sim, int axis);
 

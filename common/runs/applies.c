@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A key without effect is an error, not a warning: whoever gives it believes that it acts, and
- * reads the result so. Expressions are read each time: they are short, and parsing ahead would need
- * a second form of the same declaration. */
+/* Whether keys apply. A key without effect is an error, not a warning: whoever gives it believes
+ * that it acts, and reads the result so. Expressions are read each time: they are short, and
+ * parsing ahead would need a second form of the same declaration. Called by case.c as a case is
+ * read, and by case_keep.c for what is kept. */
 #include "common/runs/applies.h"
 
 #include <stdio.h>
@@ -9,27 +10,33 @@
 
 enum { TEXT_SIZE = 320 };
 
-/* One part "section.key=a|b" of a clause. */
+/* One part "section.key=a|b" of a clause. Clauses, parted by commas, must all hold; of the parts of
+ * a clause, parted by " or ", one must. */
 struct part {
     char section[BRC_CASEFILE_KEY_SIZE], key[BRC_CASEFILE_KEY_SIZE];
     const char *choices; /* behind the = */
     size_t length;       /* of the choices */
+    bool is_last;        /* of its clause */
+    const char *next;    /* behind the part and what parts it from the next */
 };
 
-/* Takes a part from the text; returns what follows, NULL when it cannot be read. */
-static const char *read_part(const char *text, const char *section, struct part *part)
+/* Reads the part at text; false when there is none. A key without a section is of the same one. */
+static bool read_part(const char *text, const char *section, struct part *p)
 {
     size_t n = strcspn(text, "=,"), dot = strcspn(text, ".=,");
     if (text[n] != '=')
-        return NULL;
+        return false;
     bool is_far = dot < n;
-    snprintf(part->section, sizeof part->section, "%.*s", is_far ? (int)dot : (int)strlen(section),
+    snprintf(p->section, sizeof p->section, "%.*s", is_far ? (int)dot : (int)strlen(section),
              is_far ? text : section);
     const char *key = is_far ? text + dot + 1 : text;
-    snprintf(part->key, sizeof part->key, "%.*s", (int)(text + n - key), key);
-    part->choices = text + n + 1;
-    part->length = strcspn(part->choices, " ,");
-    return part->choices + part->length;
+    snprintf(p->key, sizeof p->key, "%.*s", (int)(text + n - key), key);
+    p->choices = text + n + 1;
+    p->length = strcspn(p->choices, " ,");
+    p->next = p->choices + p->length;
+    p->is_last = strncmp(p->next, " or ", 4) != 0;
+    p->next += p->is_last ? strspn(p->next, ", ") : 4;
+    return true;
 }
 
 /* `*` stands for the tests that name the key themselves, so that a new test changes no list. */
@@ -49,7 +56,8 @@ static bool is_one_of(const char *text, const struct part *part, const char *key
     return false;
 }
 
-/* What a key is now: a choice, a number, or 0 for any zero. */
+/* What a key is now: a choice, a number, or 0 for any zero: `dt=0` is meant whatever unit it is
+ * printed in. */
 static const char *value_text(const struct brc_param *p, const void *values, char text[TEXT_SIZE])
 {
     const void *at = (const char *)values + p->offset;
@@ -75,26 +83,23 @@ static int holds(struct brc_context *ctx, const struct brc_case *run_case, const
 int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                 const struct brc_param *p, const char **clause)
 {
+    struct part part;
+    bool is_true = false;
     *clause = NULL;
-    for (const char *at = p->applies; at && *at;) {
-        const char *start = at;
-        bool is_true = false, is_more = true;
-        while (is_more) {
-            struct part part;
-            bool does;
-            at = read_part(at, section, &part);
-            if (!at)
-                BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s.%s: cannot read '%s'", section, p->key,
-                         p->applies);
-            BRC_TRY(holds(ctx, run_case, &part, p->key, &does));
-            is_true = is_true || does;
-            is_more = strncmp(at, " or ", 4) == 0;
-            at += is_more ? 4 : strspn(at, ", ");
-        }
+    for (const char *at = p->applies, *start = at; at && *at; at = part.next) {
+        bool does;
+        if (!read_part(at, section, &part))
+            BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s.%s: cannot read '%s'", section, p->key, p->applies);
+        BRC_TRY(holds(ctx, run_case, &part, p->key, &does));
+        is_true = is_true || does;
+        if (!part.is_last)
+            continue;
         if (!is_true) {
             *clause = start;
             return 0;
         }
+        start = part.next;
+        is_true = false;
     }
     return 0;
 }
@@ -102,35 +107,30 @@ int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const 
 /* Whether --set gives a key that the clause hangs on. */
 static bool is_overridden(const struct brc_case *run_case, const char *section, const char *clause)
 {
-    struct part part;
-    struct brc_param_list list;
-    for (const char *at = clause;; at += 4) {
-        at = read_part(at, section, &part);
+    struct part part = {.next = clause};
+    while (!part.is_last && read_part(part.next, section, &part)) {
+        struct brc_param_list list;
         brc_case_find_section(part.section, &list);
         const struct brc_casefile_entry *e =
             brc_casefile_find_entry(&run_case->file, part.section, part.key, list);
         if (e && e->is_override)
             return true;
-        if (strncmp(at, " or ", 4) != 0)
-            return false;
     }
+    return false;
 }
 
 /* Does the expression hang on the key of the part? */
 static bool mentions(const char *applies, const char *section, const struct part *wanted)
 {
     struct part part;
-    for (const char *at = applies; at && *at;) {
-        at = read_part(at, section, &part);
-        if (at && strcmp(part.section, wanted->section) == 0 && strcmp(part.key, wanted->key) == 0)
+    for (const char *at = applies; at && read_part(at, section, &part); at = part.next)
+        if (strcmp(part.section, wanted->section) == 0 && strcmp(part.key, wanted->key) == 0)
             return true;
-        if (at)
-            at += strncmp(at, " or ", 4) == 0 ? 4 : strspn(at, ", ");
-    }
     return false;
 }
 
-/* Keys of the section that apply by the same deciding key: "a, b". */
+/* Keys of the section that apply by the same deciding key: "a, b". Whoever has taken the wrong key
+ * finds the right one in the message. */
 static int list_others(struct brc_context *ctx, const struct brc_case *run_case,
                        const char *section, struct brc_param_list list, const struct part *decider,
                        char text[TEXT_SIZE])
@@ -158,6 +158,8 @@ static const char *clause_text(const char *clause, const char *key, char text[TE
     return text;
 }
 
+/* The message names the clause that fails, what decides it and where that comes from, as the reader
+ * may not have written it. */
 static int refuse(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                   struct brc_param_list list, const struct brc_casefile_entry *e,
                   const char *clause)
@@ -180,6 +182,8 @@ static int refuse(struct brc_context *ctx, const struct brc_case *run_case, cons
              part.section, part.key, *others ? "; what applies now is " : "", others);
 }
 
+/* A key of the file that an override has made meaningless gets its default: the user has said that
+ * this run is another one, and editing the file for it would be a nuisance. */
 static int check_key(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                      struct brc_param_list list, const struct brc_param *p, void *values)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of the steps matters: sections first, then names of sections, then whether keys apply,
- * which depends on values; files last, since overrides count from another folder. */
+/* A case from its file to filled structs. The order of the steps matters: sections first, then
+ * names of sections, then whether keys apply, which depends on values; files last, since overrides
+ * count from another folder. All sections are read whatever model and test are chosen, so that a
+ * mistake in one that this run does not use is found by this run, not by the next. */
 #include "common/runs/case.h"
 
 #include "common/runs/applies.h"
@@ -10,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Case files are called by their names in titles, logs and folders: without folder and ending, but
+ * for a name that is nothing but an ending. */
 static void set_name(struct brc_case *run_case, const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -51,7 +55,8 @@ static void choose_sides(struct brc_case *run_case)
         s->sides = brc_rigs_at(run_case->test.kind)->sides;
 }
 
-/* A section, or a key of the top level, that stands as if it were a key of another section. */
+/* A section, or a key of the top level, that stands as if it were a key of another section: in YAML
+ * two spaces too many, and the plain message, "unknown key", would not say so. */
 static int check_indents(struct brc_context *ctx, const struct brc_case *run_case)
 {
     const struct brc_casefile *c = &run_case->file;
@@ -134,6 +139,8 @@ int brc_case_parse(struct brc_context *ctx, struct brc_case *run_case, const cha
     return finish(ctx, run_case, NULL, 0);
 }
 
+/* Overrides are given again by their text, not by their values: files that they name, and what they
+ * make meaningless, are judged anew. */
 static int repeat_override(struct brc_context *ctx, struct brc_casefile *c,
                            const struct brc_casefile_entry *e)
 {
@@ -181,7 +188,7 @@ void brc_case_free(struct brc_case *run_case)
 
 /* ---- places in messages --------------------------------------------------------------------- */
 
-/* Does text start with "section.key" of the list? key gets the key. */
+/* Whether text starts with "section.key" of the list; key gets the key. */
 static bool starts_with_key(const char *text, const char *section, struct brc_param_list list,
                             char key[BRC_CASEFILE_KEY_SIZE])
 {
@@ -206,6 +213,8 @@ static bool find_key(const char *text, const char **section, struct brc_param_li
     return false;
 }
 
+/* Deeper code names a key as section.key and knows no lines; here, where the file is known, the
+ * place is put before its message. The message stays as it is where it names none. */
 void brc_case_locate(struct brc_context *ctx, const struct brc_case *run_case)
 {
     char key[BRC_CASEFILE_KEY_SIZE], where[BRC_CASEFILE_WHERE_SIZE];

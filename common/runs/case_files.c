@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names in a case are seen from its folder, those of --set from the working folder, as a shell
- * would complete them. Files are compared by device and inode: links and `..` make paths useless
- * for that. */
+/* The files that a case names. Names in a case are seen from its folder, those of --set from the
+ * working folder, as a shell would complete them. Files are compared by device and inode: links and
+ * `..` make paths useless for that. */
 #include "common/runs/case_files.h"
 
 #include <stdio.h>
@@ -15,6 +15,7 @@ static bool has_folder(const char *path)
     return strchr(path, '/') && (stat(path, &status) != 0 || S_ISREG(status.st_mode));
 }
 
+/* A name that is an override, absolute, or of a case from a pipe stays as it is. */
 static int find_file(struct brc_context *ctx, const struct brc_case *run_case, const char *key,
                      char *name)
 {

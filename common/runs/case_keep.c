@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The user's text is edited rather than written anew: comments say why a value is what it is. What
- * comes out is read back and must make the same parameters, as a kept case that makes another run
- * is worse than none. */
+/* The case that a run keeps in its folder. The user's text is edited rather than written anew:
+ * comments say why a value is what it is. What comes out is read back and must make the same
+ * parameters, as a kept case that makes another run is worse than none. Called by run.c before the
+ * first step. */
 #define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): glibc has realpath so */
 
 #include "common/runs/case_keep.h"
@@ -30,7 +31,7 @@ static char *folder_of(struct brc_context *ctx, const char *name)
 }
 
 /* The path from one absolute folder to another, "" or with a slash at its end; -1: it is longer
- * than size. */
+ * than size. Relative, so that a folder of results can be moved together with its inputs. */
 static int path_between(const char *from, const char *to, char *path, size_t size)
 {
     size_t same = 0, used = 0;
@@ -50,7 +51,8 @@ static int path_between(const char *from, const char *to, char *path, size_t siz
     return used + 4 >= size || used + (size_t)n >= size ? -1 : 0;
 }
 
-/* A relative name as the folder dir sees it. */
+/* A relative name as the folder dir sees it. One that fits already is left alone, since writing a
+ * value anew would lose how the user has written it. */
 static int keep_file(struct brc_context *ctx, struct brc_casefile *c, const struct brc_param *p,
                      const char *name, const char *dir)
 {
@@ -156,11 +158,9 @@ int brc_case_keep(struct brc_context *ctx, const struct brc_case *run_case,
     int code = write_kept(ctx, run_case, model, dir, &c);
     if (code == 0)
         code = check_kept(ctx, run_case, model, c.text);
-    *text = NULL;
-    if (code == 0 && !(*text = brc_alloc(ctx, strlen(c.text) + 1, 1)))
-        code = BRC_ERR_MEMORY;
+    *text = code == 0 ? c.text : NULL;
     if (code == 0)
-        strcpy(*text, c.text);
+        c.text = NULL;
     brc_casefile_free(&c);
     return code;
 }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models are asked from the registry by number, so that a new model needs no line here. */
+/* The sections of a case by number: four common ones, one a model, one a test that has keys of its
+ * own. Models and tests are asked from their registries, so that a new one needs no line here.
+ * Everything that walks over a case (reading, checking, keeping, printing) does so by these
+ * numbers. */
 #include "common/runs/case_sections.h"
 
 #include "common/runs/case.h"

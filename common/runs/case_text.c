@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text rather than a hash of the values: a state that does not fit can then say which key differs,
- * and what it was. */
+/* The parameters of a run, one a line. Text rather than a hash of the values: a state that does not
+ * fit can then say which key differs, and what it was. Names of files are left out (what counts is
+ * their content, by the specimen's hash), and so is the section of output, which changes no bit of
+ * a run. */
 #include "common/runs/case_text.h"
 
 #include "common/rigs/loading.h"
@@ -11,6 +13,7 @@
 
 enum { LINE_SIZE = 512 };
 
+/* Grows the text by the section; NULL, with the text freed, when there is no memory. */
 static char *add_section(struct brc_context *ctx, char *text, const char *section,
                          struct brc_param_list list, const void *values)
 {
@@ -68,6 +71,8 @@ static bool may_change(const char *line)
     return p && p->flags & BRC_PARAM_MAY_CHANGE;
 }
 
+/* Line by line in step, as both texts come from the same lists; other lists are of another version.
+ */
 int brc_case_same(struct brc_context *ctx, const char *saved, const char *now)
 {
     while (*saved && *now) {

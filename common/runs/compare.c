@@ -37,6 +37,7 @@ static int choose_models(struct compare *c)
     return 0;
 }
 
+/* A model that refuses the case does so here, before the others have run for hours. */
 static int try_models(const struct compare *c)
 {
     for (int i = 0; i < c->n; i++) {
@@ -133,6 +134,7 @@ static int check_outcomes(struct compare *c)
     return is_stopped ? fail_interrupted(c) : 0;
 }
 
+/* Last, when all results are there to be looked at. */
 static int check_energy(const struct compare *c)
 {
     for (int i = 0; i < c->n; i++)

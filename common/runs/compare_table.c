@@ -21,6 +21,7 @@ struct brc_shown brc_compare_unit(const char *name, const char *unit, double lar
     return (struct brc_shown){1, strcmp(unit, "1") == 0 ? "" : unit};
 }
 
+/* Names as the fields of the summary have them, but with spaces: the table is for readers. */
 static void put_label(FILE *out, const char *name, const char *unit)
 {
     char label[96];
@@ -62,6 +63,8 @@ static void put_value(FILE *out, double value)
         fprintf(out, "%*s", COLUMN_WIDTH, brc_compare_digits(value, text));
 }
 
+/* One unit for a row, by its largest value: columns that are to be compared must not differ in it.
+ */
 static void put_result(FILE *out, const struct brc_summary *const *summary, int n,
                        const struct brc_result *row)
 {
@@ -112,7 +115,8 @@ static void put_costs(FILE *out, const struct brc_summary *const *summary, int n
     }
 }
 
-/* How a run ended, where the end is not that the load has dropped. */
+/* How a run ended, where the end is not that the load has dropped: then the numbers above mean
+ * something else than they seem to. */
 static void put_end(FILE *out, const struct brc_summary *s)
 {
     const struct brc_result *strength = brc_output_result(s, "strength");

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which runs are missing, where they run, and what becomes of their results. The record is written
- * as each run ends; a run is known by a hash of all its parameters, so that settings that are the
- * same run share it. A run that its setting has spoilt counts as done, without a value. */
+/* The ladder from the first check to the last table: which runs are missing, where they run, and
+ * what becomes of their results. The record is written as each run ends, so that a stop loses no
+ * finished run; a run is known by a hash of all its parameters, so that settings that are the same
+ * run share it. A run that its setting has spoilt counts as done, without a value: that a step is
+ * too large is what a ladder is to find out.
+ *
+ * There are two phases, as the rungs of the axis rate hang on what the case itself has done: first
+ * the case on all specimens, then all else. */
 #include "common/runs/converge.h"
 
 #include "common/base/grow.h"
@@ -42,6 +47,8 @@ struct ladder {
 
 /* ---- what can be refused ------------------------------------------------------------------- */
 
+/* What no setting can mend. Grains of a file are one specimen: several seeds would be the same run,
+ * and its scatter zero. */
 static int check_options(struct brc_context *ctx, const struct brc_converge_options *o)
 {
     const struct brc_specimen_params *p = &o->run_case->specimen;
@@ -59,6 +66,8 @@ static int check_options(struct brc_context *ctx, const struct brc_converge_opti
     return 0;
 }
 
+/* Known only when a simulation has been built: a test declares its results, and events add theirs.
+ */
 static int find_observable(struct brc_context *ctx, struct brc_converge_study *study)
 {
     char all[BRC_NAMES_SIZE] = "";
@@ -87,6 +96,7 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
     return m->setting ? 0 : BRC_ERR_MEMORY;
 }
 
+/* One model where the options name it: the others of the case keep their lines in the record. */
 static int choose_models(struct ladder *l)
 {
     const struct brc_converge_options *o = l->study.options;
@@ -145,7 +155,8 @@ static int prepare(struct ladder *l)
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
-/* What is in the way of a run is not its setting's fault: the ladder ends. */
+/* What is in the way of a run is not its setting's fault: the ladder ends, and the run does not
+ * count as spoilt. */
 static int check_place(struct brc_context *ctx, const struct brc_run_options *o)
 {
     int code = brc_run_check_folder(ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
@@ -168,6 +179,8 @@ static const char *name_of(const void *user, int i)
     return l->task[i].model->model->name;
 }
 
+/* In the child: the case of the setting, its specimen, the run. A run of the same key that was
+ * stopped goes on from its state; one that has saved none starts anew. */
 static int run_task(struct brc_context *ctx, const void *user, int i, struct brc_progress *progress,
                     struct brc_summary *out)
 {
@@ -219,7 +232,8 @@ static void log_run(const struct ladder *l, const struct task *t, const struct b
             left);
 }
 
-/* What a run costs, by what the case's own runs have cost. */
+/* What a run costs, by what the case's own runs have cost: nothing is known before, and the time
+ * left is told as 0. */
 static double expected(const struct brc_converge_model *m, const struct brc_converge_setting *s)
 {
     const struct brc_converge_run *run = m->setting[BRC_CONVERGE_AT_CASE].run;
@@ -240,7 +254,9 @@ static int fail_interrupted(struct ladder *l)
              l->record.n, l->study.options->dir);
 }
 
-/* A run that its setting has spoilt has no value but is done; other failures end all. */
+/* A run that its setting has spoilt has no value but is done; other failures end all. It is in the
+ * record before its folder goes: a stop between the two costs a little space, in the other order a
+ * run. */
 static int read_outcome(struct brc_context *ctx, void *user, int i, const struct brc_outcome *o)
 {
     struct ladder *l = user;
@@ -273,7 +289,8 @@ static int read_outcome(struct brc_context *ctx, void *user, int i, const struct
 
 /* ---- all runs ------------------------------------------------------------------------------ */
 
-/* Takes from the record what is done; true when the run has to be done. */
+/* Takes from the record what is done; true when the run has to be done. Runs of the same key that
+ * end later are taken by the next call. */
 static bool is_missing(const struct ladder *l, struct brc_converge_run *run)
 {
     const struct brc_converge_run *done =
@@ -330,7 +347,8 @@ static int run_phase(struct ladder *l, int first, int end)
     return l->n_tasks > 0 ? fail_interrupted(l) : 0;
 }
 
-/* Of the case on the first specimen, up to the peak: more specimens leave the ladder as it is. */
+/* Of the case on the first specimen, up to the peak: a mean over all of them would move the rungs
+ * of the axis with --seeds, and the record would not fit them any more. */
 static double mean_rate(const struct brc_converge_study *study, const struct brc_converge_model *m)
 {
     const struct brc_converge_run *run = &m->setting[BRC_CONVERGE_AT_CASE].run[0];
@@ -357,6 +375,7 @@ static int run_all(struct ladder *l)
 
 /* ---- results ------------------------------------------------------------------------------- */
 
+/* The table goes to the terminal first: it is there even when the folder has no room for it. */
 static int report(struct ladder *l)
 {
     const struct brc_converge_study *study = &l->study;

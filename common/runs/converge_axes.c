@@ -28,6 +28,8 @@ struct ladder {
 
 /* ---- one setting --------------------------------------------------------------------------- */
 
+/* Overrides as the command line has them: a setting can be repeated by hand from its line in the
+ * record. */
 static void add_line(struct brc_converge_setting *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
@@ -136,6 +138,8 @@ static bool put_step(struct brc_converge_setting *s, const struct brc_case *run_
     return factor * run->dt_margin <= 0.95;
 }
 
+/* Finer adaptive loading. Below the target of the case the smallest rate must not hold the rate up,
+ * so it falls along. */
 static bool put_target(struct brc_converge_setting *s, const struct brc_case *run_case,
                        const struct brc_converge_model *m, double factor)
 {
@@ -198,6 +202,8 @@ static const struct ladder ladders[] = {
     {"grains", BRC_CONVERGE_GRAINS, 3, {0.8, 1, 1.25}, "its grains are given", put_grains}};
 enum { N_LADDERS = sizeof ladders / sizeof ladders[0] };
 
+/* Rungs from the finest; the first that `put` refuses ends the ladder, as all that follow are
+ * coarser. */
 static int add_ladder(struct brc_context *ctx, const struct brc_converge_options *options,
                       struct brc_converge_model *m, const struct ladder *l)
 {

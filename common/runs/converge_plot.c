@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Both axes are logarithmic: what counts is by what factor an error falls for a factor of cost. */
+/* The chart, as a gnuplot script with its data in it, so that it can be drawn again without the
+ * ladder. Both axes are logarithmic: what counts is by what factor an error falls for a factor of
+ * cost. Called by converge.c; it judges nothing. */
 #include "common/runs/converge_plot.h"
 
 #include "common/base/text_file.h"
@@ -9,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Relative error; what is below is drawn there. A logarithm has no zero, and differences below this
+ * lie in the uncertainty of the references. */
 static const double LEAST = 2e-4; /* relative error; what is below is drawn there */
 
 /* ---- curves -------------------------------------------------------------------------------- */
@@ -66,6 +70,8 @@ static void put_block(FILE *out, const struct brc_converge_report *r, int model,
     fputs("end_of_data\n", out);
 }
 
+/* Ranges over all panels, as the models are to be compared: gnuplot would choose them for each. Up
+ * to 20 % at least, so that a ladder of small errors does not look like one of large ones. */
 static void put_range(FILE *out, const struct brc_converge_study *study,
                       const struct brc_converge_report *report)
 {
@@ -108,6 +114,7 @@ static void put_curve(FILE *out, const struct brc_converge_report *r, int model,
             name, colour);
 }
 
+/* A single point; gnuplot draws none without a data set, hence the first point of its own. */
 static void put_point(FILE *out, const struct brc_converge_row *row, int mark, double size,
                       const char *rgb)
 {
@@ -133,6 +140,8 @@ static void put_marks(FILE *out, const struct brc_converge_report *r)
     }
 }
 
+/* One model. The grey band is the uncertainty of its reference: errors in it are not told apart.
+ * Dashed lines at 1 and 5 %. */
 static void put_panel(FILE *out, const struct brc_converge_report *r, int model)
 {
     int number = 0;

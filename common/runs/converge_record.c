@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines end in a digest: a ladder takes days, and a line that a full disk or a stop has cut must be
- * told from a whole one. The file is locked while it is open. */
+/* The record of finished runs. Lines end in a digest: a ladder takes days, and a line that a full
+ * disk or a stop has cut must be told from a whole one. It is a CSV file, so that it can be read by
+ * other programs, too; it is locked while it is open, as two ladders would mix their lines. */
 #include "common/runs/converge_record.h"
 
 #include "common/base/grow.h"
@@ -14,6 +15,8 @@
 
 enum { LINE_SIZE = 4096, HEADER_SIZE = 2048, N_COLUMNS = 8 };
 
+/* The header names the results with their units: a record of another test, or of a version that
+ * measures otherwise, does not fit and is refused. */
 static void make_header(const struct brc_converge_study *study, char header[HEADER_SIZE])
 {
     int n =
@@ -24,6 +27,7 @@ static void make_header(const struct brc_converge_study *study, char header[HEAD
     snprintf(header + n, (size_t)(HEADER_SIZE - n), ",digest\n");
 }
 
+/* Of two lines of one key the first is found; both are the same run. */
 static int keep(struct brc_context *ctx, struct brc_converge_record *r,
                 const struct brc_converge_run *run)
 {
@@ -33,25 +37,20 @@ static int keep(struct brc_context *ctx, struct brc_converge_record *r,
     return 0;
 }
 
-/* The digest of what stands before it in a line. */
-static uint64_t digest(const char *line, size_t n)
-{
-    return brc_hash_bytes(line, n, BRC_HASH_SEED);
-}
-
-/* A line ends with its digest, which is cut off. */
+/* A line ends with the digest of what stands before it, which is cut off. */
 static bool has_digest(char *line)
 {
     char text[17], *comma = strrchr(line, ',');
     if (!comma)
         return false;
-    snprintf(text, sizeof text, "%016" PRIx64, digest(line, (size_t)(comma - line)));
+    snprintf(text, sizeof text, "%016" PRIx64,
+             brc_hash_bytes(line, (size_t)(comma - line), BRC_HASH_SEED));
     *comma = '\0';
     return strcmp(comma + 1, text) == 0;
 }
 
 /* Takes a whole line apart in its place; false when it is not one of ours. */
-static bool read_line(char *line, int n_results, struct brc_converge_run *run)
+static bool parse_line(char *line, int n_results, struct brc_converge_run *run)
 {
     if (!has_digest(line))
         return false;
@@ -76,40 +75,50 @@ static bool read_line(char *line, int n_results, struct brc_converge_run *run)
     return end == column[0] + 16;
 }
 
-/* Reads what is there. A last line that a stop has cut is dropped from the file; a cut header is no
- * more than the beginning of ours. */
+static int read_line(struct brc_context *ctx, struct brc_converge_record *r, char *line)
+{
+    struct brc_converge_run run;
+    if (!parse_line(line, r->n_results, &run))
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: the line '%.40s...' is not as it was written; remove it, or replace all "
+                 "with --force",
+                 r->path, line);
+    return keep(ctx, r, &run);
+}
+
+/* Takes what is there; the text is taken apart in its place. A last line that a stop has cut is
+ * dropped from the file; a cut header is no more than the beginning of ours. */
+static int read_text(struct brc_context *ctx, struct brc_converge_record *r, const char *header,
+                     char *text)
+{
+    size_t size = strlen(header), n = strlen(text);
+    if (strncmp(text, header, n < size ? n : size) != 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s holds other results than this case has; replace it with --force, or choose "
+                 "another folder with -o",
+                 r->path);
+    char *line = n < size ? text : text + size;
+    for (char *end; (end = strchr(line, '\n')); line = end + 1) {
+        *end = '\0';
+        BRC_TRY(read_line(ctx, r, line));
+    }
+    if (ftruncate(fileno(r->file), line - text) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
+    return 0;
+}
+
 static int read_old(struct brc_context *ctx, struct brc_converge_record *r, const char *header)
 {
-    char line[LINE_SIZE];
-    long whole = 0;
+    char *text = NULL;
+    size_t size = 0;
     rewind(r->file);
-    for (bool is_first = true; fgets(line, sizeof line, r->file); is_first = false) {
-        struct brc_converge_run run;
-        size_t n = strlen(line);
-        bool is_whole = n > 0 && line[n - 1] == '\n';
-        bool is_cut = !is_whole && feof(r->file);
-        if (is_first && (is_cut ? strncmp(line, header, n) : strcmp(line, header)) != 0)
-            BRC_FAIL(
-                ctx, BRC_ERR_INPUT,
-                "%s holds other results than this case has; replace it with --force, or choose "
-                "another folder with -o",
-                r->path);
-        if (is_cut)
-            break;
-        if (is_whole)
-            line[n - 1] = '\0';
-        if (!is_whole || (!is_first && !read_line(line, r->n_results, &run)))
-            BRC_FAIL(ctx, BRC_ERR_INPUT,
-                     "%s: the line '%.40s...' is not as it was written; remove it, or replace all "
-                     "with --force",
-                     r->path, line);
-        if (!is_first)
-            BRC_TRY(keep(ctx, r, &run));
-        whole = ftell(r->file);
-    }
-    if (ferror(r->file) || ftruncate(fileno(r->file), whole) != 0)
+    int code = 0;
+    if (getdelim(&text, &size, '\0', r->file) >= 0)
+        code = read_text(ctx, r, header, text);
+    free(text);
+    if (ferror(r->file))
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", r->path, strerror(errno));
-    return 0;
+    return code;
 }
 
 static int write_text(struct brc_context *ctx, struct brc_converge_record *r, const char *text)
@@ -119,6 +128,7 @@ static int write_text(struct brc_context *ctx, struct brc_converge_record *r, co
     return 0;
 }
 
+/* Opened to add: what is there stays until it is known whose it is. */
 int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record *r,
                              const struct brc_converge_study *study)
 {
@@ -141,6 +151,7 @@ int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record
     return ftell(r->file) > 0 ? 0 : write_text(ctx, r, header);
 }
 
+/* By a look at each: at most some thousand, against runs that take seconds. */
 const struct brc_converge_run *brc_converge_record_find(const struct brc_converge_record *r,
                                                         uint64_t key)
 {
@@ -150,6 +161,7 @@ const struct brc_converge_run *brc_converge_record_find(const struct brc_converg
     return NULL;
 }
 
+/* Numbers have 17 digits, so that a ladder that goes on makes the same table to the last digit. */
 int brc_converge_record_add(struct brc_context *ctx, struct brc_converge_record *r,
                             const char *model, int seed, const struct brc_converge_setting *s,
                             const struct brc_converge_run *run)
@@ -161,7 +173,8 @@ int brc_converge_record_add(struct brc_context *ctx, struct brc_converge_record 
                   run->steps, run->dt, run->cpu_s);
     for (int i = 0; i < r->n_results; i++)
         n += snprintf(line + n, sizeof line - (size_t)n, ",%.17g", run->result[i]);
-    snprintf(line + n, sizeof line - (size_t)n, ",%016" PRIx64 "\n", digest(line, (size_t)n));
+    snprintf(line + n, sizeof line - (size_t)n, ",%016" PRIx64 "\n",
+             brc_hash_bytes(line, (size_t)n, BRC_HASH_SEED));
     BRC_TRY(write_text(ctx, r, line));
     return keep(ctx, r, run);
 }

@@ -26,6 +26,7 @@ const struct brc_converge_run *brc_converge_record_find(const struct brc_converg
 int brc_converge_record_add(struct brc_context *ctx, struct brc_converge_record *r,
                             const char *model, int seed, const struct brc_converge_setting *s,
                             const struct brc_converge_run *run);
+/* Ends the lock, too; one that was never opened is accepted. */
 void brc_converge_record_close(struct brc_converge_record *r);
 
 #endif

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors are differences over the same specimens, which cancels most of the scatter between them. A
- * setting that has lost runs has no error: the mean over the rest would be of other specimens. */
+/* What the finished runs say. Errors are differences over the same specimens, which cancels most of
+ * the scatter between them. A setting that has lost runs has no error: the mean over the rest would
+ * be of other specimens. Called by converge.c for each model; it runs nothing and prints nothing.
+ */
 #include "common/runs/converge_report.h"
 
 #include <math.h>
@@ -8,7 +10,8 @@
 
 const double brc_converge_within[2] = {0.01, 0.05};
 
-/* It reached the end of the test and measured the observable. */
+/* It reached the end of the test and measured the observable: a run that max_steps has ended may
+ * have a largest load that is no strength. */
 static bool is_good(const struct brc_converge_study *study, const struct brc_converge_run *run)
 {
     return run->is_done && strncmp(run->ended_by, "test.", 5) == 0 &&

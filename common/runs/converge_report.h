@@ -7,6 +7,7 @@
 
 extern const double brc_converge_within[2]; /* 1 % and 5 % */
 
+/* From the finished runs of model number `model`; runs that are not done count as lost. */
 void brc_converge_report_make(const struct brc_converge_study *study, int model,
                               struct brc_converge_report *out);
 /* Its error is smaller than this, with chance and the reference's uncertainty counted against it.

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* At most some hundred values. What is not there is NAN and passes through, so that a missing run
- * shows as a dash and not as a number. */
+/* Statistics on plain numbers; how they are meant is in docs/speed-and-error.md. At most some
+ * hundred values. What is not there is NAN and passes through, so that a missing run shows as a
+ * dash and not as a number. */
 #include "common/runs/converge_stats.h"
 
 #include <gsl/gsl_sort.h>
@@ -36,6 +37,8 @@ double brc_converge_median(const double *value, int n)
     return gsl_stats_median_from_sorted_data(sorted, 1, (size_t)n);
 }
 
+/* Over the specimens that have both values. Relative to the mean of the reference and not to each
+ * value, so that a specimen with a small value does not count more than others. */
 struct brc_converge_error brc_converge_error(const double *value, const double *reference, int n)
 {
     double difference[MAX_VALUES], base = 0, squares = 0;
@@ -56,6 +59,8 @@ struct brc_converge_error brc_converge_error(const double *value, const double *
     return e;
 }
 
+/* The three parts are independent, so their squares add up. Without scatter (one specimen) chance
+ * is not known, and left out. */
 double brc_converge_uncertainty(const struct brc_converge_error *loading,
                                 const struct brc_converge_error *step)
 {
@@ -64,6 +69,8 @@ double brc_converge_uncertainty(const struct brc_converge_error *loading,
     return sqrt(loading->mean * loading->mean + step->mean * step->mean + chance2);
 }
 
+/* A rung without a value is within nothing, and so is what is coarser than it. Written so that NAN
+ * is not within. */
 bool brc_converge_is_within(const struct brc_converge_rung *rung, int n, int i, double error)
 {
     for (int k = 0; k < n; k++) {
@@ -84,6 +91,8 @@ int brc_converge_cheapest(const struct brc_converge_rung *rung, int n, double er
     return best;
 }
 
+/* Between the coarsest rung within the error and the finest one that is not, by straight lines in
+ * the logarithms, as the chart has them. */
 struct brc_converge_cost brc_converge_cost(const struct brc_converge_rung *rung, int n, int ladder,
                                            double error)
 {

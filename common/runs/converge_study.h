@@ -16,6 +16,7 @@ enum brc_converge_role {
     BRC_CONVERGE_GRAINS     /* other specimens */
 };
 
+/* Overrides of a setting; the reference has most. */
 enum { BRC_CONVERGE_MAX_LINES = 6 };
 
 /* A run of a setting on one specimen, as the record keeps it. */

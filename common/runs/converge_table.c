@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Columns hold what a reader decides by: the error, how certain it is, and what it costs. */
+/* The tables of a ladder. Columns hold what a reader decides by: the error, how certain it is, and
+ * what it costs. The same function prints to the terminal and to converge.txt, so that both are the
+ * same. Called by converge.c. */
 #include "common/runs/converge_table.h"
 
 #include "common/base/text_file.h"
@@ -26,6 +28,8 @@ static const char *percent(double part, bool is_signed, char text[BRC_DIGITS_SIZ
 
 /* ---- one model ----------------------------------------------------------------------------- */
 
+/* A question mark behind a mark says that the uncertainty reaches beyond the error that is asked
+ * for. */
 static void put_row(FILE *out, const struct brc_converge_report *r, int i, struct brc_shown shown,
                     int n_seeds)
 {
@@ -72,6 +76,8 @@ static void put_rows(FILE *out, const struct brc_converge_study *study,
     }
 }
 
+/* How many specimens a mean needs follows from their scatter: its standard error falls with the
+ * square root of their number. */
 static void put_head(FILE *out, const struct brc_converge_study *study,
                      const struct brc_converge_report *r)
 {
@@ -99,6 +105,7 @@ static void put_head(FILE *out, const struct brc_converge_study *study,
 
 /* ---- adaptive against fixed loading -------------------------------------------------------- */
 
+/* In steps: seconds of the two kinds of loading hang on the machine. */
 static void put_cost(FILE *out, struct brc_converge_cost cost)
 {
     if (isfinite(cost.cost))
@@ -198,6 +205,7 @@ void brc_converge_print(FILE *out, const struct brc_converge_study *study,
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
 
+/* All columns of the table and the judgements, by numbers: what one filters by in a spreadsheet. */
 static void put_csv_row(FILE *out, const struct brc_converge_report *r, int i)
 {
     static const char *const role[] = {"case", "reference", "ladder", "choice", "grains"};

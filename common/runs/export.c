@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables come straight from a state's file; surfaces need the case, from which the specimen is made
- * anew, as states hold no geometry. */
+/* Saved states for other programs. Tables come straight from a state's file, so that states of a
+ * case whose inputs are gone can still be read; surfaces need the case, from which the specimen is
+ * made anew, as states hold no geometry. Called by the program alone. */
 #include "common/runs/export.h"
 
 #include "common/base/text_file.h"
@@ -25,14 +26,6 @@ struct loaded {
     struct brc_sim sim;
 };
 
-static void unload(struct loaded *l)
-{
-    if (l->sim.ctx)
-        brc_sim_free(&l->sim);
-    brc_specimen_free(&l->specimen);
-    brc_case_free(&l->run_case);
-}
-
 /* The model of a state. */
 static int read_model(struct brc_context *ctx, const char *path, const struct brc_model **model)
 {
@@ -43,32 +36,27 @@ static int read_model(struct brc_context *ctx, const char *path, const struct br
     return code;
 }
 
-static int load_sim(struct brc_context *ctx, const char *path, struct loaded *l)
+/* Loads a state; *l, all zero, is to be unloaded also after a failure. */
+static int load(struct brc_context *ctx, const char *path, struct loaded *l)
 {
     static const struct brc_h5_extra none = {NULL, 0, NULL, 0};
     const struct brc_model *model;
+    char *text;
+    BRC_TRY(brc_h5_read_text(ctx, path, "case", &text));
+    int code = brc_case_parse(ctx, &l->run_case, path, text);
+    free(text);
+    BRC_TRY(code);
     BRC_TRY(read_model(ctx, path, &model));
     BRC_TRY(brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen));
     BRC_TRY(brc_case_sim(ctx, &l->run_case, model, &l->specimen, &l->sim));
     return brc_h5_load(ctx, path, &l->sim, &none);
 }
 
-/* Loads a state; *l is to be unloaded also after a failure. */
-static int load(struct brc_context *ctx, const char *path, struct loaded *l)
-{
-    char *text;
-    memset(l, 0, sizeof *l);
-    BRC_TRY(brc_h5_read_text(ctx, path, "case", &text));
-    int code = brc_case_parse(ctx, &l->run_case, path, text);
-    free(text);
-    BRC_TRY(code);
-    return load_sim(ctx, path, l);
-}
-
-/* Runs put on the file at path, or on standard output. */
-struct target {
-    int (*put)(struct brc_context *ctx, FILE *out, const void *what);
-    const void *what;
+/* What is written: one of these, the others NULL. */
+struct content {
+    const struct brc_table *table;
+    const struct brc_sim *fragments;
+    const struct brc_specimen *tessellation;
 };
 
 /* The file out must not be there, nor where it is written first; what is read is never replaced:
@@ -101,13 +89,24 @@ static int check_out(struct brc_context *ctx, const struct brc_export_options *o
     return 0;
 }
 
-static int write_to(struct brc_context *ctx, const char *path, const struct target *target)
+static int put(struct brc_context *ctx, FILE *out, const struct content *c)
+{
+    if (c->fragments)
+        return brc_export_stl(ctx, out, c->fragments);
+    if (c->tessellation)
+        return brc_neper_write(ctx, out, c->tessellation);
+    brc_output_table(out, c->table, NULL);
+    return 0;
+}
+
+/* On the file at path, or on standard output where there is none. */
+static int write_to(struct brc_context *ctx, const char *path, const struct content *c)
 {
     struct brc_text_file file;
     if (!path)
-        return target->put(ctx, stdout, target->what);
+        return put(ctx, stdout, c);
     BRC_TRY(brc_text_file_begin(ctx, &file, NULL, path));
-    int code = target->put(ctx, file.out, target->what);
+    int code = put(ctx, file.out, c);
     if (code != 0)
         brc_text_file_drop(&file);
     return code != 0 ? code : brc_text_file_end(ctx, &file);
@@ -115,13 +114,8 @@ static int write_to(struct brc_context *ctx, const char *path, const struct targ
 
 /* ---- tables -------------------------------------------------------------------------------- */
 
-static int put_table(struct brc_context *ctx, FILE *out, const void *what)
-{
-    (void)ctx;
-    brc_output_table(out, what, NULL);
-    return 0;
-}
-
+/* By the names of the groups in the file; parts without fields, and the row of scalars, are no
+ * tables. */
 static int find_table(struct brc_context *ctx, struct brc_state *state, const char *name,
                       struct brc_state_part **found)
 {
@@ -141,94 +135,81 @@ static int find_table(struct brc_context *ctx, struct brc_state *state, const ch
 }
 
 /* Straight from the file: neither the case nor the files that it names are needed. */
-int brc_export_table(struct brc_context *ctx, const struct brc_export_options *order,
+int brc_export_table(struct brc_context *ctx, const struct brc_export_options *options,
                      const char *table)
 {
     const struct brc_model *model;
     struct brc_sim sim;
     struct brc_state state;
     struct brc_state_part *part;
-    BRC_TRY(check_out(ctx, order, NULL));
-    BRC_TRY(read_model(ctx, order->path, &model));
+    BRC_TRY(check_out(ctx, options, NULL));
+    BRC_TRY(read_model(ctx, options->path, &model));
     BRC_TRY(brc_sim_tables(ctx, &sim, model));
     brc_state_list(&sim, &state);
     int code = find_table(ctx, &state, table, &part);
     if (code == 0)
-        code = brc_h5_load_table(ctx, order->path, part);
+        code = brc_h5_load_table(ctx, options->path, part);
     if (code == 0)
-        code = write_to(ctx, order->out, &(struct target){put_table, part->table});
+        code = write_to(ctx, options->out, &(struct content){.table = part->table});
     brc_sim_free(&sim);
     return code;
 }
 
 /* ---- fragments ----------------------------------------------------------------------------- */
 
-/* Vertices of one fragment: sum of where its grains carry them; mark tells the last grain and the
- * fragment that a vertex was met in. */
+/* The vertices of one fragment at a time: each is met once a grain that has it, and lies in the
+ * mean of where those grains carry it, as they may have moved apart. Marks rather than lists, so
+ * that a fragment costs its own vertices only. */
 struct surface {
     const struct brc_sim *sim;
     const struct brc_fragments *fragments;
-    double (*sum)[3];
-    int32_t *count, *grain, *fragment; /* [n_vertices] */
-    size_t *first, *order;             /* grains by fragment */
+    struct vertex {
+        double sum[3];
+        int32_t count, grain, fragment; /* met; last grain and fragment that it was met in */
+    } * vertex;                         /* [n_vertices] */
+    size_t *first, *grain;              /* grains by fragment */
 };
 
 static int open_surface(struct brc_context *ctx, struct surface *s)
 {
     const struct brc_facets *f = &s->sim->specimen->facets;
-    size_t n = f->n_vertices;
-    s->sum = brc_alloc(ctx, n, sizeof *s->sum);
-    s->count = brc_alloc(ctx, n, sizeof *s->count);
-    s->grain = brc_alloc(ctx, n, sizeof *s->grain);
-    s->fragment = brc_alloc(ctx, n, sizeof *s->fragment);
-    s->first = brc_alloc(ctx, s->fragments->n + 1, sizeof *s->first);
-    s->order = brc_alloc(ctx, f->n_cells, sizeof *s->order);
-    if (!s->sum || !s->count || !s->grain || !s->fragment || !s->first || !s->order)
+    size_t n = s->fragments->n;
+    s->vertex = brc_alloc(ctx, f->n_vertices, sizeof *s->vertex);
+    s->first = brc_alloc(ctx, n + 1, sizeof *s->first);
+    s->grain = brc_alloc(ctx, f->n_cells, sizeof *s->grain);
+    if (!s->vertex || !s->first || !s->grain)
         return BRC_ERR_MEMORY;
-    for (size_t v = 0; v < n; v++)
-        s->grain[v] = s->fragment[v] = -1;
-    for (size_t k = 0; k < s->fragments->n; k++)
+    for (size_t v = 0; v < f->n_vertices; v++)
+        s->vertex[v].grain = s->vertex[v].fragment = -1;
+    for (size_t k = 0; k < n; k++)
         s->first[k + 1] = s->first[k] + (size_t)s->fragments->size[k];
     for (size_t i = 0; i < f->n_cells; i++)
-        s->order[s->first[s->fragments->of[i]]++] = i;
-    for (size_t k = s->fragments->n; k > 0; k--)
-        s->first[k] = s->first[k - 1];
+        s->grain[s->first[s->fragments->of[i]]++] = i;
+    memmove(s->first + 1, s->first, n * sizeof *s->first);
     s->first[0] = 0;
     return 0;
-}
-
-static void close_surface(struct surface *s)
-{
-    free(s->sum);
-    free(s->count);
-    free(s->grain);
-    free(s->fragment);
-    free(s->first);
-    free(s->order);
 }
 
 static void add_vertex(struct surface *s, int32_t v, int32_t grain, int32_t fragment)
 {
     double x[3];
-    if (s->fragment[v] != fragment) {
-        s->fragment[v] = fragment;
-        s->count[v] = 0;
-        s->grain[v] = -1;
-        brc_set(s->sum[v], 0, 0, 0);
-    }
-    if (s->grain[v] == grain)
+    struct vertex *at = &s->vertex[v];
+    if (at->fragment != fragment)
+        *at = (struct vertex){.grain = -1, .fragment = fragment};
+    if (at->grain == grain)
         return;
-    s->grain[v] = grain;
+    at->grain = grain;
+    at->count++;
     brc_bodies_carry(&s->sim->bodies, (size_t)grain, s->sim->specimen->facets.vertex[v], x);
-    brc_axpy(s->sum[v], 1, x);
-    s->count[v]++;
+    brc_axpy(at->sum, 1, x);
 }
 
+/* STL wants the normal, too, though it follows from the corners. */
 static void put_triangle(FILE *out, const struct surface *s, const int32_t v[3])
 {
     double x[3][3], a[3], b[3], n[3];
     for (int k = 0; k < 3; k++)
-        brc_scale(x[k], s->sum[v[k]], 1.0 / s->count[v[k]]);
+        brc_scale(x[k], s->vertex[v[k]].sum, 1.0 / s->vertex[v[k]].count);
     brc_sub(a, x[1], x[0]);
     brc_sub(b, x[2], x[0]);
     brc_cross(n, a, b);
@@ -239,7 +220,8 @@ static void put_triangle(FILE *out, const struct surface *s, const int32_t v[3])
     fputs(" endloop\nendfacet\n", out);
 }
 
-/* A facet of a grain as a fan of triangles, outward; none where the fragment goes on behind it. */
+/* A facet of a grain as a fan of triangles, outward: cells are convex, so their facets are. None
+ * where the fragment goes on behind it. The loop of a facet runs as its first cell sees it. */
 static void put_facet(FILE *out, const struct surface *s, size_t grain, size_t facet)
 {
     const struct brc_facets *f = &s->sim->specimen->facets;
@@ -258,14 +240,15 @@ static void put_facet(FILE *out, const struct surface *s, size_t grain, size_t f
 static void put_fragment(FILE *out, struct surface *s, size_t k)
 {
     const struct brc_facets *f = &s->sim->specimen->facets;
-    for (size_t i = s->first[k]; i < s->first[k + 1]; i++)
-        for (size_t j = f->cell_first[s->order[i]]; j < f->cell_first[s->order[i] + 1]; j++)
+    size_t first = s->first[k], end = s->first[k + 1];
+    for (size_t i = first; i < end; i++)
+        for (size_t j = f->cell_first[s->grain[i]]; j < f->cell_first[s->grain[i] + 1]; j++)
             for (size_t m = f->first[f->cell_facet[j]]; m < f->first[f->cell_facet[j] + 1]; m++)
-                add_vertex(s, f->loop[m], (int32_t)s->order[i], (int32_t)k);
+                add_vertex(s, f->loop[m], (int32_t)s->grain[i], (int32_t)k);
     fprintf(out, "solid fragment_%zu\n", k);
-    for (size_t i = s->first[k]; i < s->first[k + 1]; i++)
-        for (size_t j = f->cell_first[s->order[i]]; j < f->cell_first[s->order[i] + 1]; j++)
-            put_facet(out, s, s->order[i], (size_t)f->cell_facet[j]);
+    for (size_t i = first; i < end; i++)
+        for (size_t j = f->cell_first[s->grain[i]]; j < f->cell_first[s->grain[i] + 1]; j++)
+            put_facet(out, s, s->grain[i], (size_t)f->cell_facet[j]);
     fprintf(out, "endsolid fragment_%zu\n", k);
 }
 
@@ -278,46 +261,40 @@ int brc_export_stl(struct brc_context *ctx, FILE *out, const struct brc_sim *sim
         code = open_surface(ctx, &s);
     for (size_t k = 0; k < fragments.n && code == 0; k++)
         put_fragment(out, &s, k);
-    close_surface(&s);
+    free(s.vertex);
+    free(s.first);
+    free(s.grain);
     brc_fragments_free(&fragments);
     return code;
 }
 
 /* ---- formats ------------------------------------------------------------------------------- */
 
-static int put_stl(struct brc_context *ctx, FILE *out, const void *what)
-{
-    return brc_export_stl(ctx, out, what);
-}
-
-static int put_tess(struct brc_context *ctx, FILE *out, const void *what)
-{
-    return brc_neper_write(ctx, out, what);
-}
-
-/* The specimen of a state or of a case file. */
+/* A state is known by its checksum line, whatever its name is. */
 static int load_specimen(struct brc_context *ctx, const char *path, struct loaded *l)
 {
     if (brc_checksum_is_there(path, &brc_checksum_state))
         return load(ctx, path, l);
-    memset(l, 0, sizeof *l);
     BRC_TRY(brc_case_read(ctx, &l->run_case, path, NULL, 0));
     return brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen);
 }
 
-int brc_export_format(struct brc_context *ctx, const struct brc_export_options *order,
+int brc_export_format(struct brc_context *ctx, const struct brc_export_options *options,
                       const char *format)
 {
-    struct loaded l;
+    struct loaded l = {0};
     bool is_stl = strcmp(format, "stl") == 0;
     if (!is_stl && strcmp(format, "tess") != 0)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "unknown format '%.60s'; there are: stl, tess", format);
-    int code = is_stl ? load(ctx, order->path, &l) : load_specimen(ctx, order->path, &l);
-    const struct target stl = {put_stl, &l.sim}, tess = {put_tess, &l.specimen};
+    int code = is_stl ? load(ctx, options->path, &l) : load_specimen(ctx, options->path, &l);
+    const struct content content = {.fragments = is_stl ? &l.sim : NULL,
+                                    .tessellation = is_stl ? NULL : &l.specimen};
     if (code == 0)
-        code = check_out(ctx, order, &l.run_case);
+        code = check_out(ctx, options, &l.run_case);
     if (code == 0)
-        code = write_to(ctx, order->out, is_stl ? &stl : &tess);
-    unload(&l);
+        code = write_to(ctx, options->out, &content);
+    brc_sim_free(&l.sim);
+    brc_specimen_free(&l.specimen);
+    brc_case_free(&l.run_case);
     return code;
 }

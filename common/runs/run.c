@@ -62,8 +62,8 @@ struct run {
 
 /* ---- folder -------------------------------------------------------------------------------- */
 
-/* The case takes its place first: on a full disk that fails, and the old results are still there.
- */
+/* A new run in an old folder. The case takes its place first: on a full disk that fails, and the
+ * old results are still there. */
 static int replace_old(struct run *r)
 {
     const struct brc_run_options *o = r->options;
@@ -74,6 +74,7 @@ static int replace_old(struct run *r)
     return 0;
 }
 
+/* The log is flushed line by line: it is what is left of a run that was killed. */
 static void log_line(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A line of the log. */
@@ -96,6 +97,8 @@ static double cpu_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Times go on over the parts of a resumed run, so they are counters of the state, fed between
+ * saves. */
 static void add_times(struct run *r)
 {
     double cpu = cpu_now(), wall = brc_progress_clock();
@@ -125,6 +128,8 @@ static const struct brc_h5_extra *extra_of(struct run *r)
     return &r->extra;
 }
 
+/* Frames first: the state tells which of them are its own, and what a stop has left in between is
+ * swept away when the run goes on. */
 static int save(struct run *r)
 {
     char path[BRC_PATH_SIZE];
@@ -154,6 +159,8 @@ static int check_model(struct run *r, const char *path)
     return code;
 }
 
+/* A state is taken only by the case that has made it: model, then parameters by name and text, then
+ * (io_h5) specimen and fields. */
 static int load(struct run *r)
 {
     char path[BRC_PATH_SIZE], *saved;
@@ -165,14 +172,6 @@ static int load(struct run *r)
     BRC_TRY(code);
     BRC_TRY(brc_h5_load(r->ctx, path, &r->sim, extra_of(r)));
     return brc_frames_sweep(r->ctx, &r->frames, r->options->dir);
-}
-
-static int update_frames(struct run *r)
-{
-    const struct brc_output_params *output = &r->options->run_case->output;
-    return brc_frames_are_on(output) ? brc_frames_update(r->ctx, &r->frames, r->options->dir,
-                                                         output, &r->sim, extra_of(r))
-                                     : 0;
 }
 
 /* ---- step loop ----------------------------------------------------------------------------- */
@@ -197,6 +196,7 @@ static struct totals total(const struct brc_sim *sim)
     return t;
 }
 
+/* Time left is told by the loading, as far as it knows, and by max_steps, whichever comes first. */
 static void report(struct run *r, bool is_done, bool is_stopped)
 {
     const struct brc_rig *rig = &r->sim.rig;
@@ -232,25 +232,21 @@ static bool save_is_due(const struct run *r)
     return p->checkpoint > 0 && brc_progress_clock() - r->saved_at >= p->checkpoint;
 }
 
-/* The last frame is no part of the state: a run that goes on replaces it. */
-static int end_loop(struct run *r)
-{
-    BRC_TRY(save(r));
-    bool has_last =
-        brc_frames_are_on(&r->options->run_case->output) && strcmp(r->ended_by, "signal") != 0;
-    return has_last ? brc_frames_write(r->ctx, &r->frames, r->options->dir, &r->sim, extra_of(r))
-                    : 0;
-}
-
+/* Counting contacts costs a pass over them, so it is done once a row of the curve, and stands for
+ * the steps in between. */
 static int step_loop(struct run *r)
 {
     struct brc_sim *sim = &r->sim;
+    const char *dir = r->options->dir;
+    const struct brc_output_params *output = &r->options->run_case->output;
+    bool has_frames = brc_frames_are_on(output);
     r->cpu_before = cpu_now();
     r->wall_before = r->saved_at = brc_progress_clock();
     while (!(r->ended_by = ended_by(sim))) {
         if (r->counts.n_active == 0 || sim->step % sim->rig.params.sample_steps == 0)
             r->counts.n_active = (int64_t)total(sim).active;
-        BRC_TRY(update_frames(r));
+        if (has_frames)
+            BRC_TRY(brc_frames_update(r->ctx, &r->frames, dir, output, sim, extra_of(r)));
         BRC_TRY(brc_sim_step(sim));
         BRC_TRY(brc_blowup_energy(sim));
         r->counts.contact_steps += (double)r->counts.n_active;
@@ -259,11 +255,17 @@ static int step_loop(struct run *r)
         if (save_is_due(r))
             BRC_TRY(save(r));
     }
-    return end_loop(r);
+    BRC_TRY(save(r));
+    /* the last frame is no part of the state: a run that goes on replaces it */
+    return has_frames && strcmp(r->ended_by, "signal") != 0
+               ? brc_frames_write(r->ctx, &r->frames, dir, sim, extra_of(r))
+               : 0;
 }
 
 /* ---- output -------------------------------------------------------------------------------- */
 
+/* A number that is none would be null in the summary, which says "not measured": a failed
+ * computation must not look so. */
 static int check_finite(struct brc_context *ctx, const char *name, double value)
 {
     if (isfinite(value))
@@ -289,6 +291,8 @@ static int check_results(const struct run *r, const struct brc_summary *s)
 /* Energies that rounding alone makes: of all springs stretched by this part of the skin. */
 static const double ROUNDING = 1e-8;
 
+/* Everything that the summary holds, from the state alone: a run that was resumed at its end
+ * measures the same. */
 static int measure(const struct run *r, struct brc_summary *s)
 {
     const struct brc_sim *sim = &r->sim;
@@ -357,6 +361,8 @@ static int draw(struct run *r)
                : 0;
 }
 
+/* Tables before the summary, pictures last: whoever waits for summary.json finds all numbers, and a
+ * missing gnuplot loses no result. */
 static int write_results(struct run *r, struct brc_summary *out)
 {
     char energy[512];
@@ -375,11 +381,14 @@ static int write_results(struct run *r, struct brc_summary *out)
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
+/* What one needs to make the run again: version, compiler, case, model, parameters; and the digest
+ * by which a kept case is known to be the run's own. */
 static void log_header(struct run *r)
 {
     char description[DESCRIPTION_SIZE] = "";
     const struct brc_facets *f = &r->options->specimen->facets;
-    r->sim.model.describe(&r->sim, r->sim.state, description, sizeof description);
+    if (r->sim.model.describe)
+        r->sim.model.describe(&r->sim, r->sim.state, description, sizeof description);
     log_line(r, "breccia %s, compiler %s, case %s", BRC_VERSION, __VERSION__,
              r->options->run_case->name);
     log_line(r, "model %s: %s", r->sim.model.name, r->sim.model.citation);
@@ -464,6 +473,8 @@ static int check_energy(const struct run *r, const struct brc_summary *s)
     return 0;
 }
 
+/* Whatever happens, the log says it, the progress line ends, and memory is freed; of several
+ * failures the first is returned. */
 int brc_run(struct brc_context *ctx, const struct brc_run_options *options, struct brc_summary *out)
 {
     struct run r = {.ctx = ctx, .options = options};

@@ -24,7 +24,7 @@ struct brc_run_options {
 int brc_run(struct brc_context *ctx, const struct brc_run_options *options,
             struct brc_summary *out);
 
-/* A run has been started in dir, by its log. */
+/* A run has been started in dir, by its log; it need not have saved anything. */
 bool brc_run_has_begun(const char *dir);
 /* Fails when dir holds what the run would replace (results, a file of the same name of the user's
  * own) and neither is_resumed nor is_forced allows it; when there is nothing to resume; and,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The folder of a run: what may be written there. Nothing that the run did not write is replaced or
- * removed without --force, and an input never. */
+ * removed without --force, and an input never. Called by run, compare and converge before they make
+ * anything; it knows names of files, not what they hold, but for the log and the kept case. */
 #include "common/runs/run.h"
 
 #include "common/output/frames.h"
@@ -9,41 +10,44 @@
 #include "common/runs/case_files.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* What a run writes beside case.yaml, log and frames. */
+/* What a run writes beside case.yaml, log and frames. A name that is missing here would be left
+ * behind by --force, and mixed with the results of the new run. */
 static const char *const result_files[] = {
     "summary.json", "state.h5",   "curve.csv", "events.csv",  "broken.csv", "curves.png",
     "curves.gp",    "cracks.png", "cracks.gp", "cracks.plot", "gnuplot.log"};
 enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
-/* NULL when it is not there, or is not a plain file. */
-static FILE *open_plain(const char *path)
+/* The text of a file of the folder, to be freed; NULL when it is not there, or is not a plain file:
+ * whatever else has this name is not a run's. */
+static char *read_plain(const char *dir, const char *name)
 {
-    const struct brc_input in = {.path = path, .largest = SIZE_MAX, .is_plain = true};
+    char path[BRC_PATH_SIZE], *text = NULL;
+    const struct brc_input in = {.path = path, .largest = BRC_INPUT_LARGEST, .is_plain = true};
     struct brc_context quiet = BRC_CONTEXT_INIT;
-    FILE *file;
-    return brc_input_open(&quiet, &in, &file, NULL) == 0 ? file : NULL;
+    size_t n;
+    if (brc_folder_path(&quiet, dir, name, path) != 0 ||
+        brc_input_read(&quiet, &in, &text, &n) != 0)
+        return NULL;
+    return text;
 }
 
 /* A run's log begins with the program's name; a run that was ended before its first line has left
  * an empty one, which is worth nothing to anyone. */
 static bool read_log(const char *dir, bool *is_empty)
 {
-    char path[BRC_PATH_SIZE], begin[sizeof "breccia "] = "";
-    FILE *log =
-        snprintf(path, sizeof path, "%s/log", dir) < BRC_PATH_SIZE ? open_plain(path) : NULL;
-    size_t n = log ? fread(begin, 1, sizeof begin - 1, log) : 0;
-    if (log)
-        fclose(log);
-    *is_empty = n == 0;
-    return log && (n == 0 || strcmp(begin, "breccia ") == 0);
+    char *log = read_plain(dir, "log");
+    *is_empty = !log || !*log;
+    bool is_ours = log && (!*log || strncmp(log, "breccia ", 8) == 0);
+    free(log);
+    return is_ours;
 }
 
 bool brc_run_has_begun(const char *dir)
@@ -62,6 +66,8 @@ static int fail_occupied(struct brc_context *ctx, const char *dir, const char *n
              dir, name);
 }
 
+/* The beginning of a file (.part) counts, too: it is left by a run that was killed, or belongs to
+ * one that writes now. */
 static int check_absent(struct brc_context *ctx, const char *dir, const char *name)
 {
     char part[256];
@@ -71,6 +77,7 @@ static int check_absent(struct brc_context *ctx, const char *dir, const char *na
     return brc_folder_has(dir, part) ? fail_occupied(ctx, dir, part) : 0;
 }
 
+/* By device and inode, so that links and .. do not hide it. */
 static int check_input(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *name)
 {
@@ -95,6 +102,7 @@ int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc
     return 0;
 }
 
+/* An empty log is no result: a run that was ended before its first line has left it. */
 static int check_new(struct brc_context *ctx, const char *dir)
 {
     char frame[256];
@@ -137,44 +145,29 @@ int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct 
 
 /* ---- writing ------------------------------------------------------------------------------- */
 
-/* True when the file holds just this text. */
-static bool holds(const char *path, const char *text)
-{
-    FILE *file = open_plain(path);
-    size_t n = strlen(text);
-    char *found = file ? malloc(n + 1) : NULL;
-    bool is_same = found && fread(found, 1, n + 1, file) == n && memcmp(found, text, n) == 0;
-    free(found);
-    if (file)
-        fclose(file);
-    return is_same;
-}
-
 uint64_t brc_run_case_digest(const char *text)
 {
     return brc_hash_bytes(text, strlen(text), BRC_HASH_SEED);
 }
 
-/* The log tells the digest of each case that the run has kept, before it is written. */
-static bool is_in_log(const char *dir, const char *path)
+/* The kept case is just this text. */
+static bool is_kept(const char *dir, const char *text)
 {
-    char log[BRC_PATH_SIZE], line[1024], digest[32];
-    char *text = NULL;
-    size_t size = 0;
-    bool is_found = false;
-    FILE *file = open_plain(path);
-    if (!file || getdelim(&text, &size, '\0', file) < 0)
-        snprintf(digest, sizeof digest, "no digest");
-    else
-        snprintf(digest, sizeof digest, "digest %016" PRIx64, brc_run_case_digest(text));
-    free(text);
-    if (file)
-        fclose(file);
-    file = snprintf(log, sizeof log, "%s/log", dir) < BRC_PATH_SIZE ? open_plain(log) : NULL;
-    while (file && !is_found && fgets(line, sizeof line, file))
-        is_found = strncmp(line, "case.yaml: ", 11) == 0 && strstr(line, digest);
-    if (file)
-        fclose(file);
+    char *found = read_plain(dir, "case.yaml");
+    bool is_same = found && strcmp(found, text) == 0;
+    free(found);
+    return is_same;
+}
+
+/* The log tells the digest of each case that the run has kept, before it is written. */
+static bool is_in_log(const char *dir)
+{
+    char *kept = read_plain(dir, "case.yaml"), *log = read_plain(dir, "log"), line[64];
+    snprintf(line, sizeof line, "\ncase.yaml: digest %016" PRIx64 "\n",
+             kept ? brc_run_case_digest(kept) : 0);
+    bool is_found = kept && log && strstr(log, line);
+    free(kept);
+    free(log);
     return is_found;
 }
 
@@ -183,7 +176,7 @@ int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct br
 {
     char path[BRC_PATH_SIZE];
     BRC_TRY(brc_folder_path(ctx, dir, "case.yaml", path));
-    if (holds(path, text) || (is_resumed && is_in_log(dir, path)))
+    if (is_kept(dir, text) || (is_resumed && is_in_log(dir)))
         return 0;
     if (brc_case_is_input(run_case, path))
         BRC_FAIL(ctx, BRC_ERR_INPUT,
@@ -202,14 +195,16 @@ int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc
     char path[BRC_PATH_SIZE];
     BRC_TRY(brc_folder_path(ctx, dir, "case.yaml", path));
     bool may_stay = !is_new || brc_case_is_input(run_case, path);
-    return may_stay && holds(path, text) ? 0 : brc_text_file_write(ctx, NULL, path, text);
+    return may_stay && is_kept(dir, text) ? 0 : brc_text_file_write(ctx, NULL, path, text);
 }
 
+/* A lock of the file rather than a file that says "locked": it ends with the process, however that
+ * ends. Not one of fcntl, which is lost as soon as the process closes the same file anywhere else,
+ * as it does when it reads its log. */
 int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FILE **file)
 {
     char path[BRC_PATH_SIZE];
     struct stat status;
-    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     *file = NULL;
     BRC_TRY(brc_folder_path(ctx, dir, name, path));
     *file = fopen(path, "a+");
@@ -217,7 +212,7 @@ int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FIL
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", path, strerror(errno));
     if (fstat(fileno(*file), &status) != 0 || !S_ISREG(status.st_mode))
         BRC_FAIL(ctx, BRC_ERR_IO, "%s is not a plain file; choose another folder with -o", path);
-    if (fcntl(fileno(*file), F_SETLK, &lock) != 0)
+    if (flock(fileno(*file), LOCK_EX | LOCK_NB) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "another run writes to %s now; choose another folder with -o",
                  dir);
     return 0;
@@ -230,6 +225,7 @@ int brc_run_remove_results(struct brc_context *ctx, const char *dir)
     return brc_frames_sweep(ctx, NULL, dir);
 }
 
+/* By name, one after the other: a folder may hold what is the user's own. */
 int brc_run_remove(struct brc_context *ctx, const char *dir)
 {
     BRC_TRY(brc_run_remove_results(ctx, dir));
