@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loops of the integrator over bodies, four at a time, compiled for each instruction set by the
- * files that include this one. */
+ * files that include this one. Lanes are bodies, so no sum goes across them and each body has the
+ * bits that a loop over single ones would give it. Tables hold a multiple of four rows (table.h):
+ * what lies past the last body is read and written, but never counted. */
 #ifndef BRC_INTEGRATE_KERNELS_H
 #define BRC_INTEGRATE_KERNELS_H
 
@@ -15,6 +17,8 @@ BRC_LANES_INLINE brc_lanes brc_norm_of_lanes(const brc_lanes v[3])
     return brc_lanes_sqrt(brc_lanes_dot(v, v));
 }
 
+/* Platens move, too. path_length grows by a bound of what any point of the body has moved: what the
+ * neighbour search and sleeping contacts rely on. */
 static void brc_drift_loop(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -33,7 +37,9 @@ static void brc_drift_loop(struct brc_sim *sim)
     }
 }
 
-/* Local non-viscous damping of a force (or moment) f against the velocity v. */
+/* Local non-viscous damping of a force (or moment) f against the velocity v. As printed it acts on
+ * each Cartesian component, so it depends on how the specimen lies; along the velocity it does not.
+ * A body at rest is not damped: a sign of zero would push it. */
 BRC_LANES_INLINE void brc_local_damping(const struct brc_sim *sim, brc_lanes d[3],
                                         const brc_lanes f[3], const brc_lanes v[3])
 {
@@ -73,7 +79,8 @@ BRC_LANES_INLINE void brc_kick_account(const struct brc_sim *sim, brc_mask live,
     sums->damping_ahead -= brc_lanes_where(live, 0.5 * dt * brc_lanes_dot(p->d, p->now));
 }
 
-/* What local damping acts against: the motion, or what it differs from its mean by. */
+/* What local damping acts against: the motion, or what it differs from its mean by. At the start
+ * there is no mean to speak of yet, so the whole motion is damped until it is steady. */
 BRC_LANES_INLINE void brc_damped_motion(const struct brc_sim *sim, brc_lanes v[3],
                                         const brc_lanes old[3], double (*mean)[3])
 {
@@ -84,7 +91,8 @@ BRC_LANES_INLINE void brc_damped_motion(const struct brc_sim *sim, brc_lanes v[3
         v[k] = is_spared ? old[k] - spared[k] : old[k];
 }
 
-/* What pushes bodies i to i + 3: v or w before, force or moment, damping. */
+/* What pushes bodies i to i + 3: v or w before, force or moment, damping. Translation and rotation
+ * are alike so far, and share it. */
 BRC_LANES_INLINE void brc_kick_begin(const struct brc_sim *sim, double (*v)[3], double (*f)[3],
                                      double (*mean)[3], struct brc_kick *p)
 {
@@ -99,7 +107,8 @@ BRC_LANES_INLINE void brc_kick_begin(const struct brc_sim *sim, double (*v)[3], 
     }
 }
 
-/* Exponential mean over the memory of the damping. */
+/* Exponential mean over the memory of the damping: it needs one value a body, where a mean over the
+ * last steps would need all of them. */
 BRC_LANES_INLINE void brc_mean_follow(const struct brc_sim *sim, brc_mask live, double (*mean)[3],
                                       const struct brc_kick *p)
 {
@@ -112,6 +121,8 @@ BRC_LANES_INLINE void brc_mean_follow(const struct brc_sim *sim, brc_mask live, 
     brc_lanes_put3(mean, at);
 }
 
+/* Lanes that are not live keep what they had: platens among them, whose velocities belong to the
+ * test. */
 BRC_LANES_INLINE void brc_kick_put(brc_mask live, double (*v)[3], const struct brc_kick *p)
 {
     brc_lanes put[3];
@@ -136,7 +147,8 @@ BRC_LANES_INLINE void brc_kick_translation(const struct brc_sim *sim, size_t i, 
     brc_kick_account(sim, live, dt, &p, sums);
 }
 
-/* Grains with unequal moments of inertia, one after the other. */
+/* Grains with unequal moments of inertia, one after the other: their spin follows from the angular
+ * momentum by way of the orientation. */
 static __attribute__((noinline)) void brc_kick_spin(const struct brc_bodies *b, size_t i,
                                                     brc_mask live, double dt, struct brc_kick *p,
                                                     struct brc_kick_sums *sums)
@@ -178,6 +190,8 @@ BRC_LANES_INLINE void brc_kick_rotation(const struct brc_sim *sim, size_t i, brc
     brc_kick_account(sim, live, dt, &p, sums);
 }
 
+/* Grains alone. The terms of the ledger's sums are stored for each body, as the exact sums over
+ * them are made afterwards. */
 static void brc_kick_loop(struct brc_sim *sim, double dt)
 {
     const struct brc_bodies *b = &sim->bodies;

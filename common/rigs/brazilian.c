@@ -17,7 +17,8 @@ static double thickness(const struct brc_sim *sim)
     return high[2] - low[2];
 }
 
-/* Area that makes the load the tensile stress in the middle of an elastic disc. */
+/* Area that makes the load the tensile stress in the middle of an elastic disc. The diameter is
+ * that of the case where it is a cylinder, as the polygon that stands for it is narrower. */
 static double section(const struct brc_sim *sim)
 {
     double low[3], high[3];

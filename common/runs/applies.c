@@ -66,6 +66,8 @@ static const char *value_text(const struct brc_param *p, const void *values, cha
     return is_zero ? "0" : brc_params_text(p, values, text, TEXT_SIZE);
 }
 
+/* Whether a part is true of the case. A part that names no key is a mistake in a declaration, found
+ * by the first case that meets it. */
 static int holds(struct brc_context *ctx, const struct brc_case *run_case, const struct part *part,
                  const char *key, bool *does)
 {
@@ -147,7 +149,8 @@ static int list_others(struct brc_context *ctx, const struct brc_case *run_case,
     return 0;
 }
 
-/* The clause up to its end or a comma, `*` written out. */
+/* The clause up to its end or a comma, `*` written out: readers of a message do not know what it
+ * stands for. */
 static const char *clause_text(const char *clause, const char *key, char text[TEXT_SIZE])
 {
     int n = (int)strcspn(clause, ",*"), used = snprintf(text, TEXT_SIZE, "%.*s", n, clause);

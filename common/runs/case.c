@@ -23,6 +23,7 @@ static void set_name(struct brc_case *run_case, const char *path)
         *dot = '\0';
 }
 
+/* A struct for each model and test, chosen or not: all their sections are read. */
 static int make_room(struct brc_context *ctx, struct brc_case *run_case)
 {
     run_case->n_models = brc_registry_count();
@@ -113,7 +114,8 @@ static int start(struct brc_context *ctx, struct brc_case *run_case, const char 
     return make_room(ctx, run_case);
 }
 
-/* Reads on from the case itself. */
+/* Reads on from the case itself. Overrides last: they are text like the file's, and hold against
+ * it. */
 static int finish(struct brc_context *ctx, struct brc_case *run_case, const char *const *overrides,
                   int n)
 {
@@ -200,7 +202,7 @@ static bool starts_with_key(const char *text, const char *section, struct brc_pa
     return brc_params_find(list, key) != NULL;
 }
 
-/* The first section.key in text; false when there is none. */
+/* The first section.key in text, at the beginning of a word; false when there is none. */
 static bool find_key(const char *text, const char **section, struct brc_param_list *list,
                      char key[BRC_CASEFILE_KEY_SIZE])
 {

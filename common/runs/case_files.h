@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files that a case names: where they are, and that no result takes their place. */
+/* The files that a case names: where they are, and that no result takes their place. Called as a
+ * case is read, and by all that writes. */
 #ifndef BRC_CASE_FILES_H
 #define BRC_CASE_FILES_H
 

@@ -15,8 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The absolute path of a file's folder; the file itself may be a link. Allocated, NULL when there
- * is no such folder. */
+/* The absolute path of a file's folder; the file itself may be a link, which stays the name that is
+ * kept. Allocated, NULL when there is no such folder. */
 static char *folder_of(struct brc_context *ctx, const char *name)
 {
     char *folder = brc_alloc(ctx, strlen(name) + 2, 1);
@@ -90,7 +90,8 @@ static int keep_files(struct brc_context *ctx, const struct brc_case *run_case, 
     return 0;
 }
 
-/* Of several overrides of a key the last one holds. */
+/* Of several overrides of a key the last one holds, and it alone is written: the earlier ones would
+ * be a key that is given twice. */
 static int keep_overrides(struct brc_context *ctx, const struct brc_casefile *from,
                           struct brc_casefile *c)
 {
@@ -135,7 +136,7 @@ static int write_kept(struct brc_context *ctx, const struct brc_case *run_case,
     return brc_casefile_write(ctx, c, "", "model", brc_casefile_param_list, model->name);
 }
 
-/* What is kept is read back: a case that does not make the same case is worse than none. */
+/* What is kept is read back and compared as states compare cases: by all that a run hangs on. */
 static int check_kept(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_model *model, const char *text)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The case that a run keeps in its folder, so that the folder alone can be run again. */
+/* The case that a run keeps in its folder, so that the folder alone can be run again. Called by
+ * run.c. */
 #ifndef BRC_CASE_KEEP_H
 #define BRC_CASE_KEEP_H
 

@@ -20,6 +20,8 @@ struct section {
     void *values;  /* of others; NULL without a case */
 };
 
+/* Sections in their order; the models' and tests' values are NULL without a case, for callers that
+ * ask for names and lists alone. */
 static bool find_section(const struct brc_case *run_case, int i, struct section *s)
 {
     const struct section common[N_COMMON] = {
@@ -108,6 +110,7 @@ int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
     return 0;
 }
 
+/* By address: a model that is not registered (of a test) has no section. */
 const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model)
 {
     for (int i = 0; i < run_case->n_models; i++)

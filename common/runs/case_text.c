@@ -36,6 +36,8 @@ static char *add_section(struct brc_context *ctx, char *text, const char *sectio
     return grown;
 }
 
+/* All that a state hangs on, in the order of the sections; of models and tests only the ones that
+ * run. */
 char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_model *model)
 {

@@ -56,6 +56,7 @@ static void live(const struct pool *p, struct slot *s)
     _exit(0);
 }
 
+/* In a free slot; the caller knows that there is one. */
 static int start(struct pool *p, int run)
 {
     int reports[2];
@@ -154,6 +155,7 @@ static int run_all(struct pool *p)
     }
 }
 
+/* One piece of shared memory for all slots, which the children inherit by the fork. */
 int brc_queue_run(struct brc_context *ctx, const struct brc_queue *queue)
 {
     struct pool p = {.ctx = ctx, .queue = queue};

@@ -34,7 +34,7 @@ struct brc_queue {
  * signal that the parent holds is passed on, and ends the queue in the same way, but for the
  * outcomes, which are taken: the caller sees by them which runs were left out. */
 int brc_queue_run(struct brc_context *ctx, const struct brc_queue *queue);
-/* How many runs the machine can do at a time. */
+/* How many runs the machine can do at a time: one a processor that is online. */
 int brc_queue_at_once(void);
 
 #endif

@@ -86,6 +86,7 @@ static int keep_outcome(struct brc_context *ctx, void *user, int i,
     return 0;
 }
 
+/* As many at a time as there are processors, each with its line of progress. */
 static int run_all(struct compare *c)
 {
     struct brc_progress progress;
@@ -171,7 +172,7 @@ static int draw(struct compare *c)
 }
 
 /* Tables and pictures of the folder itself (gnuplot.log only grows); a comparison that goes on
- * replaces its own. */
+ * replaces its own, which it can have written only when one of its models has begun. */
 static int check_folders(const struct compare *c)
 {
     static const char *const names[] = {"compare.txt", "curves.gp", "curves.png", "cracks.gp",

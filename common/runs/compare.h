@@ -30,7 +30,8 @@ enum { BRC_DIGITS_SIZE = 40 };
 const char *brc_compare_digits(double value, char text[BRC_DIGITS_SIZE]);
 /* A line of dashes. */
 void brc_compare_rule(FILE *out, int width);
-/* The table: one row a value, one column a summary. */
+/* The table: one row a value, one column a summary; also of a single run. All summaries are of the
+ * same test. */
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n);
 
 #endif

@@ -135,7 +135,8 @@ static int check_folder(const struct ladder *l)
                              may_go_on || o->is_forced);
 }
 
-/* Everything that can be refused, before a folder is touched. */
+/* Everything that can be refused, before a folder is touched: the cheap checks first, then the
+ * specimen and the models. */
 static int prepare(struct ladder *l)
 {
     struct brc_converge_study *study = &l->study;
@@ -212,6 +213,7 @@ static int run_task(struct brc_context *ctx, const void *user, int i, struct brc
     return code;
 }
 
+/* A line a run, on standard error: a ladder may take days, and its tables come at the end alone. */
 static void log_run(const struct ladder *l, const struct task *t, const struct brc_outcome *outcome)
 {
     const struct brc_result *what = &l->study.results[l->study.observable];
@@ -358,6 +360,8 @@ static double mean_rate(const struct brc_converge_study *study, const struct brc
     return 0;
 }
 
+/* The folder of unfinished runs is empty now; where it is not, something else lies in it, and it
+ * stays. */
 static int run_all(struct ladder *l)
 {
     BRC_TRY(run_phase(l, 0, 1));

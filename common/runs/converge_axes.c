@@ -57,7 +57,8 @@ int brc_converge_case(struct brc_context *ctx, const struct brc_case *run_case,
     return brc_case_change(ctx, run_case, line, n, out);
 }
 
-/* Of all that a run hangs on. The version is a part of it: another one may compute otherwise. */
+/* Of all that a run hangs on. The version is a part of it, as another one may compute otherwise; so
+ * is the specimen, for which the text has names of files at most. */
 static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_converge_model *m, uint64_t *key)
 {

@@ -17,7 +17,8 @@ static const double LEAST = 2e-4; /* relative error; what is below is drawn ther
 
 /* ---- curves -------------------------------------------------------------------------------- */
 
-/* Grains are other specimens, and choices that are the case as written show no difference. */
+/* Grains are other specimens, and choices that are the case as written show no difference. What
+ * took no time that the clock saw has no place on a logarithmic axis. */
 static bool is_drawn(const struct brc_converge_row *row)
 {
     bool is_same = row->setting->role == BRC_CONVERGE_CHOICE && row->is_case;

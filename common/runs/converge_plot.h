@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The chart of `breccia converge`: error against cost. */
+/* The chart of `breccia converge`: error against cost, a panel a model. */
 #ifndef BRC_CONVERGE_PLOT_H
 #define BRC_CONVERGE_PLOT_H
 

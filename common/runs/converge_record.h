@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The record of a ladder's finished runs, converge_runs.csv: a line is added as each run ends, so
- * that a ladder that was stopped goes on with what is missing. */
+ * that a ladder that was stopped goes on with what is missing. It knows runs by their keys, and not
+ * what a key is made of. */
 #ifndef BRC_CONVERGE_RECORD_H
 #define BRC_CONVERGE_RECORD_H
 

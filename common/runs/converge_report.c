@@ -36,7 +36,9 @@ static struct brc_converge_error difference(const struct brc_converge_study *stu
     return brc_converge_error(x, y, study->options->seeds);
 }
 
-/* A setting that lost runs has no error: the mean of those that are left would be another one. */
+/* A setting that lost runs has no error: the mean of those that are left would be another one.
+ * Ladders are judged against the reference, choices and grains against the case, as there is no
+ * right one among them. */
 static void fill_row(const struct brc_converge_study *study, const struct brc_converge_model *m,
                      const struct brc_converge_setting *s, struct brc_converge_row *row)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors and costs of the settings of a model, from its finished runs. */
+/* Errors and costs of the settings of a model, from its finished runs: what table and chart show.
+ */
 #ifndef BRC_CONVERGE_REPORT_H
 #define BRC_CONVERGE_REPORT_H
 

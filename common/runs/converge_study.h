@@ -29,6 +29,8 @@ struct brc_converge_run {
     double result[BRC_MAX_RESULTS];
 };
 
+/* A point of a ladder: what is changed of the case, and its runs. Changes are texts, as a user
+ * would give them by --set, so that they go through the same checks. */
 struct brc_converge_setting {
     const char *axis; /* constant text; settings of one axis follow each other */
     enum brc_converge_role role;
@@ -63,7 +65,8 @@ struct brc_converge_axes {
     const char *name[BRC_CONVERGE_MAX_AXES]; /* constant texts */
 };
 
-/* What all runs measure: names and units of the results. */
+/* What all runs measure, and the models with their settings. Filled by converge.c, read by all
+ * others. */
 struct brc_converge_study {
     const struct brc_converge_options *options;
     struct brc_result results[BRC_MAX_RESULTS]; /* values are of no use */

@@ -59,8 +59,8 @@ struct content {
     const struct brc_specimen *tessellation;
 };
 
-/* The file out must not be there, nor where it is written first; what is read is never replaced:
- * the file and, where the case counts, those that it names. */
+/* The file out must not be there, nor where it is written first; what is read is never replaced,
+ * with --force neither: the file and, where the case counts, those that it names. */
 static int check_out(struct brc_context *ctx, const struct brc_export_options *o,
                      const struct brc_case *run_case)
 {
@@ -252,6 +252,8 @@ static void put_fragment(FILE *out, struct surface *s, size_t k)
     fprintf(out, "endsolid fragment_%zu\n", k);
 }
 
+/* Fragments by number, the largest first; each vertex is moved by all grains of its fragment that
+ * have it, so that the surface has no gaps where grains have come apart by less than a break. */
 int brc_export_stl(struct brc_context *ctx, FILE *out, const struct brc_sim *sim)
 {
     struct brc_fragments fragments;

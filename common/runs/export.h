@@ -18,7 +18,8 @@ struct brc_export_options {
 /* A table of a state, by its name in the file ("curve", "pairs/points"). */
 int brc_export_table(struct brc_context *ctx, const struct brc_export_options *options,
                      const char *table);
-/* "stl" or "tess". */
+/* "stl": the fragments of a state; "tess": the tessellation of a state, or of a case that need not
+ * have run. Another name is BRC_ERR_USAGE with a list. */
 int brc_export_format(struct brc_context *ctx, const struct brc_export_options *options,
                       const char *format);
 

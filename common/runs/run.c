@@ -144,7 +144,8 @@ static int save(struct run *r)
     return 0;
 }
 
-/* Named before parameters are compared: another model has others anyway. */
+/* Named before parameters are compared: another model has others anyway, and the message would name
+ * the first of them instead. */
 static int check_model(struct run *r, const char *path)
 {
     char *saved;
@@ -212,7 +213,8 @@ static void report(struct run *r, bool is_done, bool is_stopped)
     brc_progress_update(r->options->progress, r->options->progress_run, &now);
 }
 
-/* Why the run is over, NULL while it is not. */
+/* Why the run is over, NULL while it is not. The ends of the test come first: a signal in the last
+ * step does not make a finished run an interrupted one. */
 static const char *ended_by(const struct brc_sim *sim)
 {
     if (brc_rigs_done(sim))
@@ -222,7 +224,7 @@ static const char *ended_by(const struct brc_sim *sim)
     return brc_signals_held() ? "signal" : NULL;
 }
 
-/* When a state is saved changes no bit of it. */
+/* By steps or by elapsed time. When a state is saved changes no bit of it. */
 static bool save_is_due(const struct run *r)
 {
     const struct brc_run_params *p = &r->sim.run;
@@ -406,7 +408,8 @@ static int check_folder(const struct run *r)
     return brc_run_check_folder(r->ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
 }
 
-/* A log that a full disk has cut is a failure, unless there is another. */
+/* A log that a full disk has cut is a failure, unless there is another; buffered lines fail only as
+ * it is closed. */
 static int close_log(struct run *r, int code)
 {
     if (!r->log)
@@ -419,7 +422,10 @@ static int close_log(struct run *r, int code)
     return code;
 }
 
-/* Everything that can be refused is refused before the folder is touched. */
+/* Everything that can be refused is refused before the folder is touched. The simulation is built
+ * first, as it refuses most; a signal in that time leaves the folder as it was. What comes after
+ * the folder's making is ordered by what a full disk or another run may do: the case is judged, the
+ * log locked, the folder looked at once more, and only then old results go. */
 static int prepare(struct run *r)
 {
     const struct brc_run_options *o = r->options;
@@ -448,7 +454,8 @@ static int prepare(struct run *r)
 }
 
 /* After a failure the curves so far are kept for a look; the last saved state stays. Where writing
- * has failed, what is there is left alone. */
+ * has failed, what is there is left alone. A second failure is only logged, as the first one is
+ * what counts. */
 static void keep_traces(struct run *r)
 {
     struct brc_context quiet = BRC_CONTEXT_INIT, *ctx = r->ctx;
@@ -461,7 +468,8 @@ static void keep_traces(struct run *r)
     r->ctx = ctx;
 }
 
-/* Results are there whatever the energy says. */
+/* Results are there whatever the energy says, so that one can look at what went wrong. A run that a
+ * signal has ended is not judged yet: it goes on, and is at its end. */
 static int check_energy(const struct run *r, const struct brc_summary *s)
 {
     char text[512];

@@ -115,7 +115,7 @@ static int check_new(struct brc_context *ctx, const char *dir)
 }
 
 /* A run that was ended before it has saved a state has no results but frames, and starts anew;
- * where there are results, their state is lost. */
+ * where there are results, their state is lost, and to start anew would replace them unasked. */
 static int check_resumed(struct brc_context *ctx, const char *dir)
 {
     if (!brc_run_has_begun(dir))
@@ -159,7 +159,9 @@ static bool is_kept(const char *dir, const char *text)
     return is_same;
 }
 
-/* The log tells the digest of each case that the run has kept, before it is written. */
+/* The log tells the digest of each case that the run has kept, before it is written. So a user's
+ * own file of that name is told from the run's, even where the program was ended between the two.
+ */
 static bool is_in_log(const char *dir)
 {
     char *kept = read_plain(dir, "case.yaml"), *log = read_plain(dir, "log"), line[64];

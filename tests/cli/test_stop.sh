@@ -106,4 +106,20 @@ for command in "run --model vgcm" compare; do
     done
 done
 
+# a folder takes one run at a time, --force or not, whatever the first has read there
+cat >slow.yaml <<'END'
+breccia: 1
+specimen: {shape: box, size: [2 cm, 2 cm, 3 cm], grains: grid, cells: [4, 4, 6], jitter: 0.6}
+test: {kind: compression, loading: fixed, rate: 1e-9 1/s}
+run: {max_steps: 50000}
+END
+"$breccia" run slow.yaml --model vgcm -o busy >/dev/null 2>&1 &
+for _ in $(seq 400); do
+    [ -s busy/log ] && break
+    sleep 0.05
+done
+expect 4 "another run writes to busy now" "$breccia" run slow.yaml --model vgcm -o busy --force
+kill -TERM $!
+wait $!
+
 [ $failures -eq 0 ] || exit 1
