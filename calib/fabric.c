@@ -78,7 +78,6 @@ static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
     double length = rules->is_length_of_gap ? 2 * rules->rounding : brc_norm(centres);
     all->seeds += f->area[i] * d_seeds;
     all->centres += f->area[i] * d;
-    sum->n_inner++;
     if (f->is_contact[i]) {
         all->n_bonds++;
         sum->bond += bond_area * d * d / length;

@@ -19,7 +19,7 @@ struct calib_fabric_rules {
 /* All sums are over inner facets and divided by 3 V, the sum of A d over all of them: the volume
  * that they represent, without the layer at the boundary. */
 struct calib_fabric {
-    size_t n_inner, n_contacts;
+    size_t n_contacts;
     double volume;        /* m3, represented by the inner facets: V */
     double mean_distance; /* m, of the contacts' seeds */
     double coverage;      /* 1: part of sum A d that the contacts carry */

@@ -25,10 +25,9 @@ static const double interlock_angle = 42.0 * BRC_PI / 180;
 static const double cohesion_over_tau = 0.267;
 static const double strength_over_tau = 1.29;
 
-static void add_note(struct calib_guess *g, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void add_note(struct calib_guess *g, const char *format, ...)
+/* What does not fit is cut: a note is for people, and the values say the same. */
+static void __attribute__((format(printf, 2, 3)))
+add_note(struct calib_guess *g, const char *format, ...)
 {
     size_t used = strlen(g->note);
     va_list args;

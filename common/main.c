@@ -331,8 +331,7 @@ static void print_command_help(FILE *out, const struct command *c)
         char left[40];
         if (!strchr(option_table[i].commands, c->letter))
             continue;
-        snprintf(left, sizeof left, "%s%s%s", option_table[i].name,
-                 option_table[i].value ? " " : "",
+        snprintf(left, sizeof left, "%s %s", option_table[i].name,
                  option_table[i].value ? option_table[i].value : "");
         fprintf(out, "  %-18s %s\n", left, option_table[i].help);
     }

@@ -150,23 +150,9 @@ static bool is_alone(const struct brc_casefile *c, const struct brc_casefile_ent
     return true;
 }
 
-/* From its key on to the comma behind it, where there is one; YAML allows a comma before the
- * closing brace, so that the one before the key may stay. */
-static struct edit flow_piece(const char *text, const struct brc_casefile_entry *e)
-{
-    size_t end = e->end + strspn(text + e->end, " \t\r\n");
-    return (struct edit){e->key_begin, text[end] == ',' ? end + 1 : e->end, NULL, 0, {""}};
-}
-
-/* Its whole lines. */
-static struct edit block_piece(const char *text, const struct brc_casefile_entry *e)
-{
-    size_t begin = e->key_begin, end = e->end + strcspn(text + e->end, "\n");
-    while (begin > 0 && text[begin - 1] == ' ')
-        begin--;
-    return (struct edit){begin, end + (text[end] == '\n'), NULL, 0, {""}};
-}
-
+/* In braces a key goes with the comma behind it, where there is one; YAML allows a comma before the
+ * closing brace, so that the one before the key may stay. On lines of its own it goes with them,
+ * and the last of a mapping leaves empty braces: without them the section would have no value. */
 int brc_casefile_remove(struct brc_context *ctx, struct brc_casefile *c, const char *section,
                         const char *key, struct brc_param_list list)
 {
@@ -174,9 +160,18 @@ int brc_casefile_remove(struct brc_context *ctx, struct brc_casefile *c, const c
     if (!e)
         return 0;
     const struct brc_casefile_place *place = e->place < 0 ? &c->root : &c->sections[e->place];
-    struct edit edit = place->form == BRC_CASEFILE_FLOW ? flow_piece(c->text, e)
-                       : is_alone(c, e) ? (struct edit){e->key_begin, e->end, NULL, 0, {"{}"}}
-                                        : block_piece(c->text, e);
+    struct edit edit = {e->key_begin, e->end, NULL, 0, {""}};
+    if (place->form == BRC_CASEFILE_FLOW) {
+        size_t comma = e->end + strspn(c->text + e->end, " \t\r\n");
+        edit.end = c->text[comma] == ',' ? comma + 1 : e->end;
+    } else if (is_alone(c, e)) {
+        edit.part[0] = "{}";
+    } else {
+        while (edit.begin > 0 && c->text[edit.begin - 1] == ' ')
+            edit.begin--;
+        edit.end += strcspn(c->text + edit.end, "\n");
+        edit.end += c->text[edit.end] == '\n';
+    }
     return apply(ctx, c, &edit);
 }
 

@@ -72,15 +72,13 @@ struct brc_param_list {
 /* After what is named here come the meaning, when the key applies where it is not always, and flags
  * and an older name by their designators. */
 #define BRC_PARAM_M_REAL(name, u, d, r, ...)  double name;
-#define BRC_PARAM_M_INT(name, d, r, ...)      int name;
-#define BRC_PARAM_M_CHOICE(name, c, d, ...)   int name;
-#define BRC_PARAM_M_FLAG(name, d, ...)        int name;
+#define BRC_PARAM_M_INT(name, ...)            int name;
 #define BRC_PARAM_M_TEXT(name, d, ...)        char name[BRC_TEXT_SIZE];
 #define BRC_PARAM_M_REAL3(name, u, d, r, ...) double name[3];
 #define BRC_PARAM_M_INT3(name, d, r, ...)     int name[3];
-#define BRC_PARAM_MEMBERS(LIST)                                                   \
-    LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_CHOICE, BRC_PARAM_M_FLAG, \
-         BRC_PARAM_M_TEXT, BRC_PARAM_M_REAL3, BRC_PARAM_M_INT3)
+#define BRC_PARAM_MEMBERS(LIST)                                                                 \
+    LIST(BRC_PARAM_M_REAL, BRC_PARAM_M_INT, BRC_PARAM_M_INT, BRC_PARAM_M_INT, BRC_PARAM_M_TEXT, \
+         BRC_PARAM_M_REAL3, BRC_PARAM_M_INT3)
 
 #define BRC_PARAM_ROW(name, k, u, d, r, c, ...) \
     {.key = #name,                              \

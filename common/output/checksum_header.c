@@ -75,32 +75,21 @@ void brc_checksum_make(char header[BRC_CHECKSUM_SIZE], const struct brc_checksum
     print_header(kind, &s, header);
 }
 
-/* Takes the numbers out of a header, as far as they are there: it is compared as a whole later. */
-static bool read_header(const char text[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,
-                        struct header *s)
-{
-    char line[BRC_CHECKSUM_SIZE + 1], mark[MARK_SIZE];
-    size_t length = make_mark(kind, mark);
-    memcpy(line, text, BRC_CHECKSUM_SIZE);
-    line[BRC_CHECKSUM_SIZE] = '\0';
-    *s = (struct header){0};
-    if (strncmp(line, mark, length) != 0)
-        return false;
-    sscanf(line + length, "%d\nbytes %" SCNu64 "\nhash %" SCNx64, &s->format, &s->size, &s->hash);
-    return true;
-}
-
 static int check_file(struct brc_context *ctx, const char *path, FILE *file, size_t size,
                       const struct brc_checksum_kind *kind)
 {
-    char text[BRC_CHECKSUM_SIZE], expected[BRC_CHECKSUM_SIZE];
-    struct header said, found = {.format = kind->format};
+    char text[BRC_CHECKSUM_SIZE + 1] = "", expected[BRC_CHECKSUM_SIZE], mark[MARK_SIZE];
+    size_t length = make_mark(kind, mark);
+    struct header said = {0}, found = {.format = kind->format};
     if (fread(text, 1, BRC_CHECKSUM_SIZE, file) != BRC_CHECKSUM_SIZE ||
-        !read_header(text, kind, &said))
+        strncmp(text, mark, length) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO,
                  "cannot read %s: it is not a %s file of breccia, is cut short, or is of a version "
                  "before %s; %s",
                  path, kind->name, BRC_VERSION, advice);
+    /* as far as they are there: the header is compared as a whole below */
+    sscanf(text + length, "%d\nbytes %" SCNu64 "\nhash %" SCNx64, &said.format, &said.size,
+           &said.hash);
     if (said.format != kind->format)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s has the %s format %d, breccia %s reads %d; resume with the version that "

@@ -269,14 +269,6 @@ int brc_h5_get_text(const struct brc_h5_file *f, const char *path, char **text)
     return *text ? 0 : brc_h5_read_failed(f, path);
 }
 
-int brc_h5_get_label(const struct brc_h5_file *f, const char *path, const char *name, char **text)
-{
-    hid_t id = H5Aopen_by_name(f->id, path, name, H5P_DEFAULT, H5P_DEFAULT);
-    *text = read_string(f, id, true);
-    H5Aclose(id);
-    return *text ? 0 : brc_h5_read_failed(f, path);
-}
-
 int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *name, size_t *n)
 {
     uint64_t value = 0;
@@ -415,6 +407,7 @@ static void describe(const struct brc_h5_file *f, hid_t id, struct brc_h5_item *
         item->value = NAN;
     label_of(f, id, "unit", item->unit, sizeof item->unit);
     label_of(f, id, "meaning", item->meaning, sizeof item->meaning);
+    label_of(f, id, "shape", item->shape, sizeof item->shape);
     H5Tclose(type);
     H5Sclose(space);
 }

@@ -54,7 +54,6 @@ int brc_h5_put_array(const struct brc_h5_file *f, const struct brc_h5_array *a, 
 
 /* *text is allocated, to be freed by the caller. */
 int brc_h5_get_text(const struct brc_h5_file *f, const char *path, char **text);
-int brc_h5_get_label(const struct brc_h5_file *f, const char *path, const char *name, char **text);
 int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *name, size_t *n);
 /* Judges rows, width and type, before any memory is taken for them. */
 int brc_h5_check_array(const struct brc_h5_file *f, const struct brc_h5_array *a);
@@ -66,8 +65,8 @@ struct brc_h5_item {
     bool is_text;
     const char *type; /* "float64", "int32", "text" and the like */
     size_t rows, width;
-    double value;                /* of a single number, else not a number */
-    char unit[64], meaning[400]; /* "" where the dataset has none */
+    double value;                            /* of a single number, else not a number */
+    char unit[64], meaning[400], shape[128]; /* "" where the dataset has none */
 };
 /* Calls act for each dataset of the file until it returns another value than 0, which is returned.
  */

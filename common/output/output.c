@@ -126,8 +126,8 @@ int brc_output_summary(struct brc_context *ctx, const char *dir, const char *nam
 
 const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size)
 {
-    bool is_drift = s->energy_drift > s->energy_residual, is_wrong;
-    is_wrong = s->energy_check == BRC_ENERGY_WRONG;
+    bool is_drift = s->energy_drift > s->energy_residual;
+    bool is_wrong = s->energy_check == BRC_ENERGY_WRONG;
     *text = '\0';
     if (is_wrong || s->energy_check == BRC_ENERGY_DOUBTFUL)
         snprintf(text, size,

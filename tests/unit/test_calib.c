@@ -175,8 +175,7 @@ static void out_of_reach_is_said(void **state)
 
 /* ---- guesses ------------------------------------------------------------------------------- */
 
-static const struct calib_fabric unit_fabric = {.n_inner = 10,
-                                                .n_contacts = 10,
+static const struct calib_fabric unit_fabric = {.n_contacts = 10,
                                                 .mean_distance = 5.1017e-3,
                                                 .coverage = 1,
                                                 .bond = 1,
