@@ -61,11 +61,9 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
     c->status[row] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);
     if (poly_is_linearised(sim))
-        poly_account_bond(sim, row, event.energy);
-    if (BRC_OPTION(sim->run.ledger)) {
-        sim->ledger.damage += event.energy;
-        sim->ledger.bond -= event.energy;
-    }
+        poly_account_bond(batch, i, event.energy);
+    batch->energy[i][BRC_ACCOUNT_DAMAGE] += event.energy;
+    batch->energy[i][BRC_ACCOUNT_BOND] -= event.energy;
     for (int k = 0; k < 3; k++)
         g->bond.f[k][lane] = g->bond.m[k][lane] = g->k[k][lane] = 0;
 }
@@ -142,6 +140,7 @@ static void take_contacts(struct poly_batch *batch)
         batch->listed[i] = c->np[row] > 0;
     }
     batch->n_contacts = n;
+    memset(batch->energy, 0, (size_t)n * sizeof *batch->energy);
     for (; n % BRC_LANES != 0; n++) {
         batch->row[n] = batch->row[n - 1];
         batch->a[n] = batch->a[n - 1];
@@ -177,24 +176,30 @@ static int prepare(struct poly_batch *batch, int32_t i)
     return 0;
 }
 
-/* Stiffness of contact i of the batch; works into the ledger. */
 static void store_contact(struct poly_batch *batch, int32_t i)
 {
-    struct brc_sim *sim = batch->sim;
     struct brc_contacts *c = batch->contacts;
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
     size_t row = (size_t)batch->row[i];
     int lane = i % BRC_LANES;
     c->gap[row] = g->gap[lane];
     store_stiffness(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
-    if (!BRC_OPTION(sim->run.ledger))
-        return;
-    sim->ledger.contact_normal += g->work_normal[lane];
-    sim->ledger.bond += g->work_bond[lane];
+}
+
+/* The works of contact i of the batch, and what else it has booked, on the accounts of a. */
+static void book_contact(struct poly_batch *batch, int32_t i)
+{
+    const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
+    double *e = batch->energy[i], *account = batch->sim->bodies.energy[batch->a[i]];
+    int lane = i % BRC_LANES;
+    e[BRC_ACCOUNT_NORMAL] += g->work_normal[lane];
+    e[BRC_ACCOUNT_BOND] += g->work_bond[lane];
     if (batch->viscous)
-        sim->ledger.viscous += g->work_viscous[lane];
-    sim->ledger.contact_shear += g->stored[lane];
-    sim->ledger.friction += g->slid[lane] - g->stored[lane];
+        e[BRC_ACCOUNT_VISCOUS] += g->work_viscous[lane];
+    e[BRC_ACCOUNT_SHEAR] += g->stored[lane];
+    e[BRC_ACCOUNT_FRICTION] += g->slid[lane] - g->stored[lane];
+    for (int k = 0; k < BRC_N_ACCOUNTS; k++)
+        account[k] += e[k];
 }
 
 static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct poly_state *st,
@@ -247,6 +252,8 @@ static void work_through(struct poly_batch *batch, bool linearised)
             store_contact(batch, i);
             if (linearised)
                 poly_linearise(batch, i);
+            if (BRC_OPTION(batch->sim->run.ledger))
+                book_contact(batch, i);
         }
     }
 }

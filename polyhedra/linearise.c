@@ -7,15 +7,13 @@
  * much as a step. */
 static const double WORTH_STEPS = 3;
 
-void poly_account_bond(struct brc_sim *sim, size_t row, double stored)
+void poly_account_bond(struct poly_batch *batch, int32_t i, double stored)
 {
-    const struct poly_contacts *columns = sim->pairs.model_columns;
-    double gained = stored - columns->motion[row][POLY_MOTION_STORED];
-    columns->motion[row][POLY_MOTION_STORED] = stored;
-    if (!BRC_OPTION(sim->run.ledger))
-        return;
-    sim->ledger.bond += gained;
-    sim->ledger.contact_normal -= gained;
+    const struct poly_contacts *columns = batch->contacts->model_columns;
+    double *last = &columns->motion[batch->row[i]][POLY_MOTION_STORED], gained = stored - *last;
+    *last = stored;
+    batch->energy[i][BRC_ACCOUNT_BOND] += gained;
+    batch->energy[i][BRC_ACCOUNT_NORMAL] -= gained;
 }
 
 /* Adds force and moment of a bond, and its slope, to what the tangent moves along. */
@@ -120,7 +118,7 @@ void poly_linearise(struct poly_batch *batch, int32_t i)
     double *motion = columns->motion[row];
     double stored = is_intact ? batch->four[i / BRC_LANES].bond_stored[i % BRC_LANES] : 0;
     if (is_intact)
-        poly_account_bond(sim, row, stored);
+        poly_account_bond(batch, i, stored);
     memset(motion, 0, sizeof columns->motion[row]);
     motion[POLY_MOTION_STORED] = stored;
     /* A point that is awake and apart may touch within a few steps. Rather than to look for its

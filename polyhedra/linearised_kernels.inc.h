@@ -97,9 +97,11 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
     }
     poly_tangent_forces(&w, columns, &s, i->row);
     poly_motion_put(columns, i->row, &s);
-    if (ledger)
-        batch->linearised_work += brc_lanes_where(
-            brc_lanes_first(n), poly_work_of_four(c, &w, &g, i->row, batch->sim->dt));
+    if (ledger) {
+        brc_lanes work = poly_work_of_four(c, &w, &g, i->row, batch->sim->dt);
+        for (int k = 0; k < n; k++)
+            batch->sim->bodies.energy[i->a[k]][BRC_ACCOUNT_NORMAL] += work[k];
+    }
     poly_put_wrenches(c, &w, &g, i->row);
     return 0;
 }
@@ -110,7 +112,6 @@ BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const boo
     const struct poly_contacts *columns = c->model_columns;
     struct poly_numbers4 i;
     int n = 0;
-    batch->linearised_work = brc_lanes_all(0);
     for (size_t row = 0; row < c->n; row++) {
         i.row[n] = (int32_t)row;
         n += columns->is_linearised[row];
@@ -119,8 +120,6 @@ BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const boo
     }
     while (n > 0)
         n = poly_move_linearised(batch, &i, n, ledger);
-    if (ledger)
-        batch->sim->ledger.contact_normal += brc_lanes_sum(batch->linearised_work);
 }
 
 #endif

@@ -195,10 +195,10 @@ static void release_spring(struct poly_batch *batch, int32_t i, size_t p)
         poly_slip_at(u, &f, middle);
         poly_lane3(du, u, i % BRC_LANES);
         double stored = part * brc_norm2(xi), work = part * sim->dt * brc_dot(xi, du);
-        sim->ledger.contact_shear -= stored;
-        sim->ledger.friction += stored + work;
+        batch->energy[i][BRC_ACCOUNT_SHEAR] -= stored;
+        batch->energy[i][BRC_ACCOUNT_FRICTION] += stored + work;
         if (poly_is_linearised(sim))
-            sim->ledger.contact_normal -= work;
+            batch->energy[i][BRC_ACCOUNT_NORMAL] -= work;
     }
     brc_set(xi, 0, 0, 0);
 }
@@ -267,7 +267,9 @@ static double list_part(struct poly_batch *batch, int32_t i, size_t p, size_t n)
 static void list_at_platen(struct poly_batch *batch, int32_t i)
 {
     const struct brc_contacts *c = batch->contacts;
-    size_t p = (size_t)c->p0[batch->row[i]], end = p + (size_t)c->np[batch->row[i]];
+    size_t p = (size_t)c->p0[batch->row[i]], n = (size_t)c->np[batch->row[i]], end = p + n;
+    if ((size_t)batch->n_points + n > POLY_TASKS)
+        poly_work_off(batch);
     for (; p < end; p++) {
         if (batch->n_points++ == POLY_TASKS) {
             poly_work_off(batch);

@@ -239,7 +239,7 @@ void poly_begin_tangent(struct poly_batch *batch, int32_t i);
 void poly_linearise(struct poly_batch *batch, int32_t i);
 /* Where contacts may be linearised, the works of bonds are not booked by themselves: what the bond
  * of a contact has gained since it was computed last is part of the work of all that acts. */
-void poly_account_bond(struct brc_sim *sim, size_t row, double stored);
+void poly_account_bond(struct poly_batch *batch, int32_t i, double stored);
 
 /* forces.c: the loops. */
 void poly_forces(struct brc_sim *sim, void *state);
@@ -261,7 +261,7 @@ bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
 int poly_bond_mode(const struct poly_bond *bond);
 
 /* energy.c, springs.c: stored energy and springs, from state alone. */
-void poly_energy(const struct brc_sim *sim, const void *state, double stored[3]);
+void poly_energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS]);
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
 /* Dynamic regime: the step bears that all listed features of a contact close at once. */
 int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_platen);

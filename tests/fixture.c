@@ -273,20 +273,15 @@ void fixture_velocity(struct fixture *f, size_t body, const double v[3], const d
 
 void fixture_ledger(struct fixture *f)
 {
-    double stored[3];
     struct brc_ledger *l = &f->sim.ledger;
-    *l = (struct brc_ledger){0};
-    f->sim.model.energy(&f->sim, f->sim.state, stored);
-    l->bond = stored[0];
-    l->contact_normal = stored[1];
-    l->contact_shear = stored[2];
-    /* v- . v+ = v+ . (v+ - dt f / m), the half steps of the leapfrog scheme */
     const struct brc_bodies *b = &f->sim.bodies;
+    /* v- . v+ = v+ . (v+ - dt f / m), the half steps of the leapfrog scheme */
     l->kinetic = fixture_kinetic(f);
-    for (size_t i = 0; i < b->n_grains; i++)
+    for (size_t i = 0; i < b->n_grains; i++) {
         l->kinetic -= 0.5 * f->sim.dt * (brc_dot(b->v[i], b->f[i]) + brc_dot(b->w[i], b->t[i]));
-    l->start = l->kinetic + stored[0] + stored[1] + stored[2];
-    f->sim.damping_ahead = 0;
+        b->damping_ahead[i] = 0;
+    }
+    brc_accounts_open(&f->sim);
 }
 
 void fixture_rest(struct fixture *f)
@@ -356,12 +351,13 @@ void fixture_steps(struct fixture *f, int n)
 {
     for (int i = 0; i < n; i++)
         CHECK_OK(&f->ctx, brc_sim_step(&f->sim));
+    brc_accounts_settle(&f->sim);
 }
 
 double fixture_stored(const struct fixture *f)
 {
     double stored[3];
-    f->sim.model.energy(&f->sim, f->sim.state, stored);
+    brc_accounts_stored(&f->sim, stored);
     return stored[0] + stored[1] + stored[2];
 }
 

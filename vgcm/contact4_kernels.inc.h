@@ -40,7 +40,7 @@ struct vgcm_chunk {
     bool is_waiting; /* a contact before those to come has yet to be done: nothing adds at once */
     uint8_t acts[VGCM_CHUNK];
     double force[VGCM_CHUNK][3 * BRC_LANES]; /* on b; moments on a and b; see vgcm_bodies_add */
-    double energy[VGCM_CHUNK][VGCM_N_ENERGY];
+    double energy[VGCM_CHUNK][BRC_N_ACCOUNTS];
 };
 
 struct vgcm_loop {
@@ -176,14 +176,13 @@ VGCM_INLINE void vgcm_bodies_add(const struct vgcm_loop *l, size_t i, brc_lanes 
     brc_lanes_put(b + 4, brc_lanes_at(b + 4) + tb);
 }
 
-/* The energies that contact i books, on a. */
+/* What contact i books on the accounts of a, the first four of them as lanes. */
 VGCM_INLINE void vgcm_energies_add(const struct vgcm_loop *l, size_t i, brc_lanes first,
                                    double viscous)
 {
-    const struct vgcm_bodies *columns = l->sim->bodies.model_columns;
-    double *e = columns->energy[l->c->a[i]];
+    double *e = l->sim->bodies.energy[l->c->a[i]];
     brc_lanes_put(e, brc_lanes_at(e) + first);
-    e[VGCM_ENERGY_VISCOUS] += viscous;
+    e[BRC_ACCOUNT_VISCOUS] += viscous;
 }
 
 /* What four contacts book, but for the work stored in bonds, which rides with the moments. */
@@ -199,7 +198,7 @@ VGCM_INLINE void vgcm_contact4_book(struct vgcm_loop *l, const struct vgcm_conta
             continue;
         }
         brc_lanes_put(l->chunk.energy[slot], e[k]);
-        l->chunk.energy[slot][VGCM_ENERGY_VISCOUS] = x->viscous[k];
+        l->chunk.energy[slot][BRC_ACCOUNT_VISCOUS] = x->viscous[k];
         l->chunk.acts[slot] = VGCM_FORCE_AND_ENERGY;
     }
 }
@@ -248,7 +247,7 @@ static __attribute__((noinline)) void vgcm_chunk_add(struct vgcm_loop *l, size_t
         const double *f = chunk->force[slot], *e = chunk->energy[slot];
         vgcm_bodies_add(l, i, brc_lanes_at(f), brc_lanes_at(f + 4), brc_lanes_at(f + 8));
         if (chunk->acts[slot] == VGCM_FORCE_AND_ENERGY)
-            vgcm_energies_add(l, i, brc_lanes_at(e), e[VGCM_ENERGY_VISCOUS]);
+            vgcm_energies_add(l, i, brc_lanes_at(e), e[BRC_ACCOUNT_VISCOUS]);
     }
     memset(chunk->acts, VGCM_NOTHING, sizeof chunk->acts);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Energy, springs and strength left, from the state alone, and the ledger's terms of a step. Called
- * through the model's table, seldom but for the ledger, so it is written for one point at a time
+/* Energy, springs and strength left, from the state alone. Called
+ * through the model's table, and seldom, so it is written for one point at a time
  * and shares only the law with the loops: what the loops book, step by step, is checked against
  * what stands here (brc_ledger_drift), which would be worth little if both used one piece of code.
  * It may not know queues, chunks or lanes. */
-#include "common/parallel/sums.h"
 #include "vgcm/contact.h"
-
-#include <string.h>
 
 /* State of point j of contact i with its forces [N]. A facet keeps no opening and no force of its
  * points: they follow from its six numbers u, as in the loops. */
@@ -43,7 +40,7 @@ static double shear_energy(const struct vgcm_bond *bond, double area, const stru
 }
 
 static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
-                     double stored[3])
+                     double stored[BRC_N_ACCOUNTS])
 {
     const struct brc_contacts *c = &sim->pairs;
     const struct vgcm_contacts *f = vgcm_columns(c);
@@ -57,7 +54,7 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
             u[k] = brc_lanes_all(f->u[i][k]);
             moment[k] = brc_lanes_all(f->moment[i][k]);
         }
-        stored[0] +=
+        stored[BRC_ACCOUNT_BOND] +=
             0.5 * vgcm_energy_affine(brc_lanes_all(bond.kn), brc_lanes_all(bond.ks), moment, u)[0];
         return;
     }
@@ -66,13 +63,13 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
         /* what a broken point holds is a contact's, as the ledger books it from then on */
         bool is_bond = vgcm_law_is_whole(law, flags, q.dn, q.ds);
         double normal = 0.5 * q.fn * q.un, shear = shear_energy(&bond, p->law[j][VGCM_AREA], &q);
-        stored[is_bond ? 0 : 1] += normal;
-        stored[is_bond ? 0 : 2] += shear;
+        stored[is_bond ? BRC_ACCOUNT_BOND : BRC_ACCOUNT_NORMAL] += normal;
+        stored[is_bond ? BRC_ACCOUNT_BOND : BRC_ACCOUNT_SHEAR] += shear;
     }
 }
 
 static void add_platen(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
-                       double stored[3])
+                       double stored[BRC_N_ACCOUNTS])
 {
     const struct brc_contacts *c = &sim->platens;
     const struct vgcm_points *p = vgcm_point_columns(c);
@@ -82,56 +79,18 @@ static void add_platen(const struct brc_sim *sim, const struct vgcm_law *law, si
     for (size_t j = (size_t)c->p0[i], end = j + (size_t)c->np[i]; j < end; j++) {
         struct vgcm_point q = vgcm_point_at(p, j, p->un[j], bond.ks * p->law[j][VGCM_AREA]);
         if (is_held || q.un < 0)
-            stored[1] += 0.5 * kn * p->law[j][VGCM_AREA] * q.un * q.un;
-        stored[2] += shear_energy(&bond, p->law[j][VGCM_AREA], &q);
+            stored[BRC_ACCOUNT_NORMAL] += 0.5 * kn * p->law[j][VGCM_AREA] * q.un * q.un;
+        stored[BRC_ACCOUNT_SHEAR] += shear_energy(&bond, p->law[j][VGCM_AREA], &q);
     }
 }
 
-void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3])
+void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law,
+                        double (*of_grain)[BRC_N_ACCOUNTS])
 {
-    const struct brc_bodies *b = &sim->bodies;
-    /* seldom, so that three passes do: each contact's energy with its first grain, then one sum
-     * that does not hang on the order */
-    for (int k = 0; k < 3; k++) {
-        memset(b->terms, 0, b->n_grains * sizeof *b->terms);
-        for (size_t i = 0; i < sim->pairs.n + sim->platens.n; i++) {
-            const struct brc_contacts *c = i < sim->pairs.n ? &sim->pairs : &sim->platens;
-            size_t row = i < sim->pairs.n ? i : i - sim->pairs.n;
-            double of_contact[3] = {0, 0, 0};
-            if (c == &sim->pairs)
-                add_pair(sim, law, row, of_contact);
-            else
-                add_platen(sim, law, row, of_contact);
-            b->terms[c->a[row]] += of_contact[k];
-        }
-        stored[k] = brc_sum_exact(b->terms, b->n_grains);
-    }
-}
-
-/* Sum of a column of the grains' energies, with a stride of 8: the same whatever the order of the
- * grains, as the ledger must not hang on it, nor on how grains are shared out. Most columns are 0
- * in most steps. */
-static double total(const struct brc_bodies *b, const double *x)
-{
-    bool is_zero = true;
-    for (size_t i = 0; i < b->n_grains; i++) {
-        b->terms[i] = x[8 * i];
-        is_zero = is_zero && x[8 * i] == 0;
-    }
-    return is_zero ? 0 : brc_sum_exact(b->terms, b->n_grains);
-}
-
-void vgcm_energy_book(struct brc_sim *sim)
-{
-    const struct vgcm_bodies *columns = sim->bodies.model_columns;
-    struct brc_ledger *l = &sim->ledger;
-    const double *e = (const double *)columns->energy;
-    l->bond += total(&sim->bodies, (const double *)sim->bodies.sum + 7);
-    l->contact_normal += total(&sim->bodies, e + VGCM_ENERGY_NORMAL);
-    l->contact_shear += total(&sim->bodies, e + VGCM_ENERGY_SHEAR);
-    l->damage += total(&sim->bodies, e + VGCM_ENERGY_DAMAGE);
-    l->friction += total(&sim->bodies, e + VGCM_ENERGY_FRICTION);
-    l->viscous += total(&sim->bodies, e + VGCM_ENERGY_VISCOUS);
+    for (size_t i = 0; i < sim->pairs.n; i++)
+        add_pair(sim, law, i, of_grain[sim->pairs.a[i]]);
+    for (size_t i = 0; i < sim->platens.n; i++)
+        add_platen(sim, law, i, of_grain[sim->platens.a[i]]);
 }
 
 double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact)

@@ -14,7 +14,7 @@
 static const struct brc_param params[] = {BRC_PARAM_LIST(VGCM_PARAMS)};
 #undef BRC_OWNER
 #define BRC_OWNER struct vgcm_bodies
-static const struct brc_field body_fields[] = {VGCM_BODY_FIELDS(BRC_FIELD, BRC_FIELD3)};
+static const struct brc_field body_fields[] = {VGCM_BODY_FIELDS(BRC_FIELD)};
 #undef BRC_OWNER
 #define BRC_OWNER struct vgcm_contacts
 static const struct brc_field contact_fields[] = {
@@ -223,9 +223,6 @@ static void select_loops(struct brc_sim *sim, void *state)
 static void forces(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
-    const struct vgcm_bodies *columns = sim->bodies.model_columns;
-    if (own->flags & VGCM_LEDGER)
-        memset(columns->energy, 0, sim->bodies.n_grains * sizeof *columns->energy);
     own->loops->forces[own->flags](sim, &own->law);
 }
 
@@ -233,14 +230,12 @@ static void platens(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
     own->loops->platens(sim, &own->law, own->flags);
-    if (own->flags & VGCM_LEDGER)
-        vgcm_energy_book(sim);
 }
 
-static void energy(const struct brc_sim *sim, const void *state, double stored[3])
+static void energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS])
 {
     const struct vgcm_state *own = state;
-    vgcm_energy_stored(sim, &own->law, stored);
+    vgcm_energy_stored(sim, &own->law, of_grain);
 }
 
 static int springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)

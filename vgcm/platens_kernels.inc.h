@@ -291,12 +291,11 @@ static void vgcm_platen_finish(const struct vgcm_platen_loop *w, size_t i, const
 /* Contacts of a grain come in the order of its platens, after those with other grains. */
 static void vgcm_platen_book(const struct vgcm_platen_loop *w, size_t i)
 {
-    const struct vgcm_bodies *columns = w->sim->bodies.model_columns;
-    double *e = columns->energy[w->c->a[i]];
-    e[VGCM_ENERGY_NORMAL] += brc_lanes_sum(w->energy.normal);
-    e[VGCM_ENERGY_SHEAR] += brc_lanes_sum(w->energy.shear);
-    e[VGCM_ENERGY_FRICTION] += brc_lanes_sum(w->energy.friction);
-    e[VGCM_ENERGY_VISCOUS] += w->viscous;
+    double *e = w->sim->bodies.energy[w->c->a[i]];
+    e[BRC_ACCOUNT_NORMAL] += brc_lanes_sum(w->energy.normal);
+    e[BRC_ACCOUNT_SHEAR] += brc_lanes_sum(w->energy.shear);
+    e[BRC_ACCOUNT_FRICTION] += brc_lanes_sum(w->energy.friction);
+    e[BRC_ACCOUNT_VISCOUS] += w->viscous;
 }
 
 static void vgcm_platen_step(struct vgcm_platen_loop *w, size_t i, int flags)

@@ -67,13 +67,10 @@ struct vgcm_params {
     BRC_PARAM_MEMBERS(VGCM_PARAMS)
 };
 
-#define VGCM_BODY_FIELDS(SCALAR, VECTOR)                           \
-    SCALAR(double, radius, BRC_STATE, "m", "radius of the sphere") \
-    VECTOR(double, energy, 8, BRC_SCRATCH, "J",                    \
-           "booked by the contacts in which it is a in this step, see enum vgcm_energies_booked")
+#define VGCM_BODY_FIELDS(SCALAR) SCALAR(double, radius, BRC_STATE, "m", "radius of the sphere")
 
 struct vgcm_bodies {
-    VGCM_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3)
+    VGCM_BODY_FIELDS(BRC_COLUMN)
 };
 
 /* A contact is a sphere contact (new neighbours), or a facet. The displacement of a facet's points
@@ -100,17 +97,6 @@ enum {
     VGCM_DN,
     VGCM_DS,
     VGCM_N_POINT
-};
-
-/* order of what contacts book in a step; the work stored in bonds is in the bodies' sum, behind the
- * moment. One line of a cache. */
-enum vgcm_energies_booked {
-    VGCM_ENERGY_NORMAL,
-    VGCM_ENERGY_SHEAR,
-    VGCM_ENERGY_DAMAGE,
-    VGCM_ENERGY_FRICTION,
-    VGCM_ENERGY_VISCOUS,
-    VGCM_N_ENERGY = 8
 };
 
 #define VGCM_CONTACT_FIELDS(SCALAR, VECTOR, RENAMED, VECTOR_RENAMED)                            \
@@ -206,8 +192,8 @@ extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2;
 
 /* energy.c */
 /* Adds what contacts have booked on the bodies in this step to the ledger. */
-void vgcm_energy_book(struct brc_sim *sim);
-void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law, double stored[3]);
+void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law,
+                        double (*of_grain)[BRC_N_ACCOUNTS]);
 /* Tensile strength of a bonded contact that its points have left, over that at the start, by area.
  */
 double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact);

@@ -159,9 +159,9 @@ int brc_blowup_number(const struct brc_sim *sim)
                   "has a velocity that is no number");
 }
 
-int brc_blowup_energy(const struct brc_sim *sim)
+int brc_blowup_energy(struct brc_sim *sim)
 {
-    const struct brc_ledger *l = &sim->ledger;
+    const struct brc_ledger *l = brc_accounts_settle(sim);
     const struct brc_bodies *b = &sim->bodies;
     double given = fabs(l->start) + fabs(l->boundary) + fabs(l->gravity);
     if (!sim->run.ledger || fabs(l->kinetic) <= ENERGY_GROWTH * given)

@@ -16,6 +16,6 @@ int brc_blowup_number(const struct brc_sim *sim);
 /* Between steps: fails when the kinetic energy is a thousand times what the ledger knows that the
  * sample had at the start and was given since. For simulations whose velocities nobody else sets.
  * Without the ledger nothing is known. */
-int brc_blowup_energy(const struct brc_sim *sim);
+int brc_blowup_energy(struct brc_sim *sim);
 
 #endif

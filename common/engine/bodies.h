@@ -7,32 +7,34 @@
 
 /* v and w are half-step values while forces are computed: the displacement of a point in the step
  * that has just been made is (v + w x r) dt, with the positions at its end. */
-#define BRC_BODY_FIELDS(SCALAR, VECTOR, RENAMED)                                                  \
-    VECTOR(double, x, 3, BRC_STATE, "m", "centre of mass")                                        \
-    VECTOR(double, v, 3, BRC_STATE, "m s-1", "velocity, at the half step")                        \
-    VECTOR(double, q, 4, BRC_STATE, "1", "orientation, principal axes to space, scalar first")    \
-    VECTOR(double, w, 3, BRC_STATE, "rad s-1", "angular velocity in space, at the half step")     \
-    VECTOR(double, l, 3, BRC_STATE, "kg m2 s-1", "angular momentum in space, at the half step")   \
-    VECTOR(double, f, 3, BRC_STATE, "N", "sum of forces")                                         \
-    VECTOR(double, t, 3, BRC_STATE, "N m", "sum of moments about the centre")                     \
-    VECTOR(double, sum, 8, BRC_SCRATCH, "N, N m", "f, 0, t, 0 of pairs, while they are added up") \
-    SCALAR(double, terms, BRC_SCRATCH, "J, N", "terms of a sum over bodies, before it is made")   \
-    SCALAR(double, damping, BRC_SCRATCH, "J", "work of local damping before the kick")            \
-    SCALAR(double, damping_ahead, BRC_SCRATCH, "J", "and after it")                               \
-    SCALAR(double, mass, BRC_STATE, "kg", "inertial mass in use; 0 on platens")                   \
-    VECTOR(double, inertia, 3, BRC_STATE, "kg m2", "principal moments of inertia in use")         \
-    RENAMED(double, path_length, travel, BRC_STATE, "m",                                          \
-            "path of the centre plus bounding radius times turn, summed")                         \
-    RENAMED(double, path_at_rebuild, travel_listed, BRC_STATE, "m",                               \
-            "path_length at the last neighbour search")                                           \
-    SCALAR(double, true_mass, BRC_STATE, "kg", "mass from the density")                           \
-    VECTOR(double, true_inertia, 3, BRC_STATE, "kg m2", "principal moments from the density")     \
-    SCALAR(double, volume, BRC_STATE, "m3", "volume")                                             \
-    RENAMED(double, bounding_radius, reach, BRC_STATE, "m",                                       \
-            "radius of the bounding sphere about the centre")                                     \
-    VECTOR(double, v_mean, 3, BRC_STATE, "m s-1", "mean velocity of the last steps")              \
-    VECTOR(double, w_mean, 3, BRC_STATE, "rad s-1", "mean angular velocity of the last steps")    \
-    VECTOR(double, x0, 3, BRC_STATE, "m", "centre of mass at the start")                          \
+#define BRC_BODY_FIELDS(SCALAR, VECTOR, RENAMED)                                                \
+    VECTOR(double, x, 3, BRC_STATE, "m", "centre of mass")                                      \
+    VECTOR(double, v, 3, BRC_STATE, "m s-1", "velocity, at the half step")                      \
+    VECTOR(double, q, 4, BRC_STATE, "1", "orientation, principal axes to space, scalar first")  \
+    VECTOR(double, w, 3, BRC_STATE, "rad s-1", "angular velocity in space, at the half step")   \
+    VECTOR(double, l, 3, BRC_STATE, "kg m2 s-1", "angular momentum in space, at the half step") \
+    VECTOR(double, f, 3, BRC_STATE, "N", "sum of forces")                                       \
+    VECTOR(double, t, 3, BRC_STATE, "N m", "sum of moments about the centre")                   \
+    VECTOR(double, sum, 8, BRC_SCRATCH, "N, N m, J",                                            \
+           "f, 0, t, energy of bonds of pairs, while they are added up")                        \
+    VECTOR(double, energy, 8, BRC_STATE, "J", "booked by contacts: accounts.h")                 \
+    SCALAR(double, terms, BRC_SCRATCH, "J, N", "terms of a sum over bodies, before it is made") \
+    SCALAR(double, damping, BRC_STATE, "J", "work of local damping so far")                     \
+    SCALAR(double, damping_ahead, BRC_STATE, "J", "and over the half step after the last kick") \
+    SCALAR(double, mass, BRC_STATE, "kg", "inertial mass in use; 0 on platens")                 \
+    VECTOR(double, inertia, 3, BRC_STATE, "kg m2", "principal moments of inertia in use")       \
+    RENAMED(double, path_length, travel, BRC_STATE, "m",                                        \
+            "path of the centre plus bounding radius times turn, summed")                       \
+    RENAMED(double, path_at_rebuild, travel_listed, BRC_STATE, "m",                             \
+            "path_length at the last neighbour search")                                         \
+    SCALAR(double, true_mass, BRC_STATE, "kg", "mass from the density")                         \
+    VECTOR(double, true_inertia, 3, BRC_STATE, "kg m2", "principal moments from the density")   \
+    SCALAR(double, volume, BRC_STATE, "m3", "volume")                                           \
+    RENAMED(double, bounding_radius, reach, BRC_STATE, "m",                                     \
+            "radius of the bounding sphere about the centre")                                   \
+    VECTOR(double, v_mean, 3, BRC_STATE, "m s-1", "mean velocity of the last steps")            \
+    VECTOR(double, w_mean, 3, BRC_STATE, "rad s-1", "mean angular velocity of the last steps")  \
+    VECTOR(double, x0, 3, BRC_STATE, "m", "centre of mass at the start")                        \
     VECTOR(double, q0, 4, BRC_STATE, "1", "orientation at the start")
 
 struct brc_bodies {

@@ -59,10 +59,4 @@ void brc_integrate_kick(struct brc_sim *sim, double dt)
     const struct brc_bodies *b = &sim->bodies;
     loops_of(sim)->kick(sim, dt);
     sim->ledger.kinetic = brc_sum_exact(b->terms, b->n_grains);
-    if (!BRC_OPTION(sim->run.ledger && sim->damping_alpha > 0)) {
-        sim->damping_ahead = 0;
-        return;
-    }
-    sim->ledger.local_damping += brc_sum_exact(b->damping, b->n_grains);
-    sim->damping_ahead = brc_sum_exact(b->damping_ahead, b->n_grains);
 }

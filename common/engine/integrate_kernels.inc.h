@@ -204,7 +204,8 @@ static void brc_kick_loop(struct brc_sim *sim, double dt)
             brc_kick_rotation(sim, i, live, dt, &sums);
         brc_lanes_put(b->terms + i, sums.kinetic); /* rows of platens may be written, too */
         if (BRC_OPTION(sim->run.ledger)) {
-            brc_lanes_put(b->damping + i, sums.damping);
+            brc_lanes_put(b->damping + i, brc_lanes_at(b->damping + i) +
+                                              brc_lanes_at(b->damping_ahead + i) + sums.damping);
             brc_lanes_put(b->damping_ahead + i, sums.damping_ahead);
         }
     }

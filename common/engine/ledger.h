@@ -2,8 +2,8 @@
 /* Energy ledger. Each term is integrated from its own force: over a step from n to n + 1 a force
  * does the work (F_n + F_n+1)/2 . dx, which with the kinetic energy m v_n-1/2 . v_n+1/2 / 2
  * balances the leapfrog scheme to round-off for linear springs, so that a residual shows a term
- * that is missing or wrong. Models add bond ... viscous in `forces` and `platens`; common adds the
- * rest. */
+ * that is missing or wrong. bond ... local_damping and gravity are sums over the grains
+ * (accounts.h), up to date once they are settled; the others always are. */
 #ifndef BRC_LEDGER_H
 #define BRC_LEDGER_H
 

@@ -7,6 +7,7 @@
 
 #include "common/base/table.h"
 #include "common/input/params.h"
+#include "common/engine/accounts.h"
 #include "common/engine/stability.h"
 #include "common/geometry/grid.h"
 
@@ -37,14 +38,17 @@ struct brc_model {
     int (*pairs)(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
                  const struct brc_neighbours *platens);
     /* Hot. All rows of sim->pairs for one step: writes f, ta, tb, k (and k_version), updates point
-     * state, adds to the ledger when sim->run.ledger is on, appends crack events. No allocation
-     * outside brc_contacts_points and brc_events_add, no I/O; reads bodies, never writes them, but
-     * for their sum where the model ADDS: then ta and tb need not be written, nor read again. */
+     * state, books energies on the grains' accounts (accounts.h) when sim->run.ledger is on,
+     * appends crack events. No allocation outside brc_contacts_points and brc_events_add, no I/O;
+     * reads bodies, never writes them, but for their accounts, and for their sum where the model
+     * ADDS: then ta and tb need not be written, nor read again. */
     void (*forces)(struct brc_sim *sim, void *state);
     /* The same for the rows of sim->platens. */
     void (*platens)(struct brc_sim *sim, void *state);
-    /* Energy stored now, from state alone [J]: bond, contact normal, contact shear. */
-    void (*energy)(const struct brc_sim *sim, const void *state, double stored[3]);
+    /* Energy stored now, from state alone [J]: adds that of each contact to the row of its grain a,
+     * in the accounts of bonds, normal and shear springs. */
+    void (*energy)(const struct brc_sim *sim, const void *state,
+                   double (*of_grain)[BRC_N_ACCOUNTS]);
     /* Springs that act now, linearised, for the stable time step. */
     int (*springs)(const struct brc_sim *sim, const void *state, struct brc_springs *out);
 

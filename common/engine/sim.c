@@ -9,6 +9,7 @@
  * of the neighbour lists, nor a restart change a bit. */
 #include "common/engine/sim.h"
 
+#include "common/engine/accounts.h"
 #include "common/base/invariant.h"
 #include "common/engine/blowup.h"
 #include "common/engine/integrate.h"
@@ -119,6 +120,7 @@ static void gather(struct brc_sim *sim)
         if (is_added) {
             brc_add(b->f[i], b->f[i], b->sum[i]);
             brc_copy(b->t[i], b->sum[i] + 4);
+            b->energy[i][BRC_ACCOUNT_BOND] += b->sum[i][7];
         }
     }
     if (!is_added)
@@ -325,27 +327,19 @@ static int build(struct brc_sim *sim)
  * all that. */
 static int start(struct brc_sim *sim)
 {
-    double stored[3];
     sim->dt_limit = sim->run.regime == BRC_QUASI_STATIC ? 0 : HUGE_VAL;
     brc_sim_forces(sim);
-    sim->ledger = (struct brc_ledger){0};
     sim->dt = sim->run.regime == BRC_QUASI_STATIC ? 1 : 0;
     sim->k_seen[0] = sim->k_seen[1] = -1;
     BRC_TRY(follow_stiffness(sim, true));
-    sim->ledger = (struct brc_ledger){0};
     /* from v_0 back to v_-1/2, then the first whole kick */
     double alpha = sim->damping_alpha;
     sim->damping_alpha = 0;
     brc_integrate_kick(sim, -0.5 * sim->dt);
     sim->damping_alpha = alpha;
     brc_integrate_kick(sim, sim->dt);
-    sim->ledger.local_damping = 0;
     brc_platens_restore(sim);
-    sim->model.energy(sim, sim->state, stored);
-    sim->ledger.bond = stored[0];
-    sim->ledger.contact_normal = stored[1];
-    sim->ledger.contact_shear = stored[2];
-    sim->ledger.start = sim->ledger.kinetic + stored[0] + stored[1] + stored[2];
+    brc_accounts_open(sim);
     return sim->ctx->code;
 }
 
@@ -458,18 +452,6 @@ void brc_sim_free(struct brc_sim *sim)
     memset(sim, 0, sizeof *sim);
 }
 
-/* Work of gravity over the drift that has just been made. It is booked apart from the forces of
- * contacts, as it is exact: the weight does not change over a step. */
-static void add_gravity_work(struct brc_sim *sim)
-{
-    const struct brc_bodies *b = &sim->bodies;
-    if (!BRC_OPTION(brc_norm2(sim->run.gravity) > 0))
-        return;
-    for (size_t i = 0; i < b->n_grains; i++)
-        b->terms[i] = b->true_mass[i] * brc_dot(sim->run.gravity, b->v[i]) * sim->dt;
-    sim->ledger.gravity += brc_sum_exact(b->terms, b->n_grains);
-}
-
 int brc_sim_step(struct brc_sim *sim)
 {
     size_t events = sim->events.table.n;
@@ -477,8 +459,6 @@ int brc_sim_step(struct brc_sim *sim)
     double dt_before = sim->dt;
     BRC_ASSERT(sim->dt > 0 && sim->ctx->code == 0);
     brc_integrate_drift(sim);
-    sim->ledger.local_damping += sim->damping_ahead;
-    add_gravity_work(sim);
     sim->step++;
     sim->time += sim->dt;
     BRC_TRY(check_path(sim));
@@ -521,8 +501,9 @@ int brc_sim_restore(struct brc_sim *sim)
 
 /* Over all that is saved and nothing else, so that a state that is read back has the hash it was
  * saved with. Point ranges count as they follow each other, wherever they lie in memory. */
-uint64_t brc_sim_hash(const struct brc_sim *sim)
+uint64_t brc_sim_hash(struct brc_sim *sim)
 {
+    brc_accounts_settle(sim);
     uint64_t hash = brc_table_hash(&sim->bodies.table, BRC_HASH_SEED);
     hash = brc_table_hash(&sim->bodies.model, hash);
     hash = brc_contacts_hash(&sim->pairs, hash);

@@ -66,13 +66,12 @@ extern const struct brc_param_list brc_run_param_list;
 
 /* Scalars that belong to the state, declared once for saving and hashing; with those of the rig and
  * the ledger's terms. */
-#define BRC_SIM_SCALARS(X, RENAMED)                                                               \
-    X(int64_t, step, "1", "steps made")                                                           \
-    X(double, time, "s", "time")                                                                  \
-    X(double, dt, "s", "time step")                                                               \
-    X(double, dt_limit, "s", "stable limit at the last estimate")                                 \
-    X(double, stiffness_bound, "s-2", "largest sum k / m at the last estimate of dt_limit")       \
-    X(double, damping_ahead, "J", "work of local damping over the half step after the last kick") \
+#define BRC_SIM_SCALARS(X, RENAMED)                                                         \
+    X(int64_t, step, "1", "steps made")                                                     \
+    X(double, time, "s", "time")                                                            \
+    X(double, dt, "s", "time step")                                                         \
+    X(double, dt_limit, "s", "stable limit at the last estimate")                           \
+    X(double, stiffness_bound, "s-2", "largest sum k / m at the last estimate of dt_limit") \
     RENAMED(int64_t, n_rebuilds, n_listings, "1", "neighbour searches so far")
 
 struct brc_sim {
@@ -120,7 +119,7 @@ int brc_sim_step(struct brc_sim *sim);
  * what is not saved (adjacency, counts, the model's private memory). */
 int brc_sim_restore(struct brc_sim *sim);
 /* 64-bit hash over bodies, contacts, points, events, rig and ledger. */
-uint64_t brc_sim_hash(const struct brc_sim *sim);
+uint64_t brc_sim_hash(struct brc_sim *sim);
 
 /* Platen of a body number (a platen body). */
 static inline const struct brc_platen *brc_sim_platen(const struct brc_sim *sim, int32_t body)

@@ -13,6 +13,7 @@ static void add_table(struct brc_state *s, const char *path, struct brc_table *t
 void brc_state_list(struct brc_sim *sim, struct brc_state *state)
 {
     state->n = 0;
+    brc_accounts_settle(sim);
     state->part[state->n++] = (struct brc_state_part){
         .path = "scalars", .set = brc_sim_scalars, .base = sim, .n = 1, .is_fixed = true};
     add_table(state, "bodies", &sim->bodies.table, true);

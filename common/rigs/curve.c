@@ -21,7 +21,7 @@ static int add_row(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
     struct brc_curve *c = &rig->curve;
-    const struct brc_ledger *l = &sim->ledger;
+    const struct brc_ledger *l = brc_accounts_settle(sim);
     size_t i;
     BRC_TRY(brc_rig_add_row(sim->ctx, rig, &i));
     int across[2] = {0, rig->axis == 2 ? 1 : 2};

@@ -295,15 +295,16 @@ static const double ROUNDING = 1e-8;
 
 /* Everything that the summary holds, from the state alone: a run that was resumed at its end
  * measures the same. */
-static int measure(const struct run *r, struct brc_summary *s)
+static int measure(struct run *r, struct brc_summary *s)
 {
-    const struct brc_sim *sim = &r->sim;
+    struct brc_sim *sim = &r->sim;
     const struct brc_case *run_case = r->options->run_case;
     struct totals t = total(sim);
     double stretch = ROUNDING * sim->skin;
     struct brc_fragments fragments;
     double stored[3];
-    sim->model.energy(sim, sim->state, stored);
+    brc_accounts_settle(sim);
+    brc_accounts_stored(sim, stored);
     *s = (struct brc_summary){
         .seed = run_case->specimen.seed,
         .n_grains = sim->bodies.n_grains,

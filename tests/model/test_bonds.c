@@ -330,7 +330,7 @@ static struct pull pull(struct fixture *f, int direction, double u_end, double u
         old = force;
     }
     r.last = old;
-    r.damage = f->sim.ledger.damage;
+    r.damage = brc_accounts_settle(&f->sim)->damage;
     return r;
 }
 
@@ -476,7 +476,7 @@ static void friction_after_damage(void **state)
     /* 1e-7 across would give the spring 48.8 N of a limit of 14.6 N; the normal has turned by 1e-5
      */
     CHECK_NEAR(f->sim.bodies.f[1][1], -0.3 * normal, 0, 1e-4);
-    assert_true(f->sim.ledger.friction > 0);
+    assert_true(brc_accounts_settle(&f->sim)->friction > 0);
 }
 
 static void snap_back_is_refused(void **state)

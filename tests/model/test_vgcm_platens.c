@@ -72,7 +72,7 @@ static double residual_on(struct fixture *f, const struct shape *shape, enum brc
     fixture_forces(f);
     fixture_ledger(f);
     fixture_steps(f, 1500);
-    f->sim.model.energy(&f->sim, f->sim.state, stored);
+    brc_accounts_stored(&f->sim, stored);
     double residual = brc_ledger_residual(&f->sim.ledger), slid = f->sim.ledger.friction;
     double drift = brc_ledger_drift(&f->sim.ledger, stored);
     print_message("%s, bonding %d: residual %.1e, drift %.1e, friction %.3g J, normal %.3g J\n",

@@ -36,10 +36,10 @@ static void null_forces(struct brc_sim *sim, void *state)
     (void)sim, (void)state;
 }
 
-static void null_energy(const struct brc_sim *sim, const void *state, double stored[3])
+static void null_energy(const struct brc_sim *sim, const void *state,
+                        double (*of_grain)[BRC_N_ACCOUNTS])
 {
-    (void)sim, (void)state;
-    brc_set(stored, 0, 0, 0);
+    (void)sim, (void)state, (void)of_grain;
 }
 
 static int null_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)

@@ -53,7 +53,7 @@ static void make_sim(struct fixture *f)
     f->sim.pairs.status[2] = BRC_BROKEN;
     const struct brc_event event = {.a = 1, .b = 5, .facet = 2, .mode = BRC_MODE_SHEAR};
     brc_events_add(&f->ctx, &f->sim.events, 17, &event);
-    f->sim.ledger.friction = 1.5;
+    f->sim.bodies.energy[0][BRC_ACCOUNT_FRICTION] = 1.5;
     f->sim.rig.force_peak = 3e4;
 }
 

@@ -1,13 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* vgcm: contacts that are listed but exert nothing change no bit of a run, though they move all
- * others to other places in the list, and so into other chunks, lanes and queues. */
+/* Contacts that are listed but exert nothing change no bit of a run, though they move all others to
+ * other places in the list, and so into other chunks, batches, lanes and queues. polyhedra without
+ * linearised contacts: how long one may stay linearised hangs on when it was listed. */
 #include "tests/fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-extern const struct brc_model brc_model_vgcm;
+extern const struct brc_model brc_model_vgcm, brc_model_polyhedra;
+
+static const struct {
+    const struct brc_model *model;
+    const char *settings[2]; /* quasi-static, dynamic */
+} way[] = {
+    {&brc_model_vgcm, {"", "viscous: 1e4 1/s"}},
+    {&brc_model_polyhedra,
+     {"evaluation: literal; eps_th: 1e-3", "evaluation: literal; eps_th: 1e-3; gn: 1e5 1/s"}}};
 
 struct outcome {
     size_t n_contacts, n_events, n_bodies;
@@ -15,7 +24,7 @@ struct outcome {
     struct brc_ledger ledger;
 };
 
-static void run(struct fixture *f, const char *skin, int regime, struct outcome *o)
+static void run(struct fixture *f, int model, const char *skin, int regime, struct outcome *o)
 {
     static const char *const more[] = {"ledger: on", "ledger: on; regime: dynamic; dt: 3e-7 s"};
     static const char *const test[] = {
@@ -23,7 +32,7 @@ static void run(struct fixture *f, const char *skin, int regime, struct outcome 
         "kind: compression; friction: 0.2; loading: fixed; rate: 100 1/s"};
     char settings[128];
     snprintf(settings, sizeof settings, "%s; skin: %s", more[regime], skin);
-    fixture_sim(f, &brc_model_vgcm, regime == 0 ? "" : "viscous: 1e4 1/s", test[regime], settings);
+    fixture_sim(f, way[model].model, way[model].settings[regime], test[regime], settings);
     fixture_steps(f, 600);
     const struct brc_bodies *b = &f->sim.bodies;
     *o = (struct outcome){.n_contacts = f->sim.pairs.n,
@@ -43,11 +52,12 @@ static void listed_contacts_change_no_bit(void **state)
     struct fixture *f = *state;
     struct outcome few, many;
     fixture_specimen(f, "shape: box; grains: packing; size: 25 mm, 25 mm, 35 mm");
-    for (int regime = 0; regime < 2; regime++) {
-        run(f, "0.2", regime, &few);
-        run(f, "0.5", regime, &many);
-        print_message("%zu and %zu contacts, %zu points broken\n", few.n_contacts, many.n_contacts,
-                      few.n_events);
+    for (int i = 0; i < 4; i++) {
+        int model = i / 2, regime = i % 2;
+        run(f, model, "0.2", regime, &few);
+        run(f, model, "0.5", regime, &many);
+        print_message("%s: %zu and %zu contacts, %zu and %zu events\n", way[model].model->name,
+                      few.n_contacts, many.n_contacts, few.n_events, many.n_events);
         assert_true(many.n_contacts > few.n_contacts + 20);
         assert_true(few.n_events > 50);
         assert_int_equal(many.n_events, few.n_events);
