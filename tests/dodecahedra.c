@@ -3,6 +3,7 @@
 
 #include "common/geometry/vec.h"
 #include "tests/near.h"
+#include "tests/rotate.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/fixture.h"
+#include "tests/rotate.h"
 
 #include "common/geometry/grid.h"
 #include "common/engine/integrate.h"

@@ -21,6 +21,8 @@ int brc_console_open(struct brc_context *ctx)
     return 0;
 }
 
+/* errno is cleared first: an error of an earlier write has left only the stream's mark, and some
+ * older errno would name a wrong reason. */
 int brc_console_close(struct brc_context *ctx)
 {
     bool has_failed = ferror(stdout);
@@ -33,6 +35,9 @@ int brc_console_close(struct brc_context *ctx)
     return 0;
 }
 
+/* Plain words stay as they are, so that a command that is shown can be read; all else stands in
+ * single quotes, within which a shell reads nothing. A quote itself ends them, is escaped, and
+ * begins them again. */
 void brc_console_word(FILE *out, const char *word)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"

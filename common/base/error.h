@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One list of error codes with texts and exit statuses; the context that records the first failure.
  * Every function that can fail returns int: 0 on success, a negative code of this list otherwise.
- */
+ * The context is handed down from the caller and is no variable of the process, so that a program
+ * may hold several simulations. Bad input is an error, never a clamped value: whoever asked for
+ * something else than what was computed would not notice. Slips of the program itself are
+ * BRC_ASSERT (invariant.h). */
 #ifndef BRC_ERROR_H
 #define BRC_ERROR_H
 
 #include "common/base/brc.h"
 
-/* name, code, exit status of the program, text */
+/* name, code, exit status of the program, text. Statuses are for scripts and stay what they are;
+ * several codes share one where a script would do the same about them. */
 #define BRC_ERRORS(X)                                                        \
     X(BRC_OK, 0, 0, "success")                                               \
     X(BRC_ERR_INTERNAL, -1, 1, "internal error")                             \
@@ -41,9 +45,9 @@ struct brc_context {
     const struct brc_comm *comm; /* the ranks that share the run; NULL: this process alone */
 };
 
-#define BRC_CONTEXT_INIT        \
-    {                           \
-        0, "", NULL, 0, 0, NULL \
+#define BRC_CONTEXT_INIT \
+    {                    \
+        0                \
     }
 
 /* Records the first failure (later ones are dropped) and returns code. */

@@ -56,6 +56,7 @@ int brc_folder_check_writable(struct brc_context *ctx, const char *dir)
     return 0;
 }
 
+/* lstat, as a link that leads nowhere is somebody's file, too, and would be written through. */
 bool brc_folder_has(const char *dir, const char *name)
 {
     char path[BRC_PATH_SIZE];

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+/* What a pipe holds on Linux: one read takes all that is there. */
 enum { FIRST_SIZE = 1 << 16 };
 
 static int fail_read(struct brc_context *ctx, const struct brc_input *in, const char *why)
@@ -47,7 +48,8 @@ static int check_kind(struct brc_context *ctx, const struct brc_input *in,
     return 0;
 }
 
-/* Judged before it is opened, which some devices notice, and again as it is open. */
+/* Opening a terminal or a tape may do something, and a pipe without a writer waits: hence the check
+ * before. The file may be another one by then: hence the check after. */
 int brc_input_open(struct brc_context *ctx, const struct brc_input *in, FILE **file, size_t *size)
 {
     struct stat status;

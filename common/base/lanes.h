@@ -2,7 +2,14 @@
 /* Four doubles side by side, the unit in which hot loops work on every machine: compilers map them
  * to whatever registers there are. Nothing depends on the registers' width, and sums over lanes
  * have one order, so each machine gives the same bits. Loops are compiled for several instruction
- * sets and one is chosen as the program runs (simd.h). */
+ * sets and one is chosen as the program runs (simd.h).
+ *
+ * Vector extensions of the compiler rather than intrinsics: operators read like the formulas that
+ * they implement, and the same source compiles for plain x86-64, where each operation becomes two.
+ * Intrinsics stand only where the compilers' own choice was not the one instruction that there is,
+ * each with the plain form beside it. AVX-512 was measured to be faster nowhere
+ * (docs/numerics.md). A mask shuts off the lanes past the end of a list (brc_lanes_first), so that
+ * a law need not be written a second time for single items. */
 #ifndef BRC_LANES_H
 #define BRC_LANES_H
 
@@ -39,7 +46,8 @@ BRC_LANES_INLINE void brc_lanes_put(double *x, brc_lanes a)
     *(brc_lanes_loose *)x = a;
 }
 
-/* a where the mask is set, b elsewhere */
+/* a where the mask is set, b elsewhere. Both are computed, so either may divide by zero or be NAN
+ * where it is not picked: traps are off. */
 BRC_LANES_INLINE brc_lanes brc_lanes_pick(brc_mask m, brc_lanes a, brc_lanes b)
 {
 #ifdef __AVX2__
@@ -79,7 +87,7 @@ BRC_LANES_INLINE bool brc_lanes_any(brc_mask m)
 #endif
 }
 
-/* The first n lanes. */
+/* The first n lanes; all for n of 4 or more, so that a loop needs no case for its end. */
 BRC_LANES_INLINE brc_mask brc_lanes_first(int64_t n)
 {
     static const int64_t mask[2 * BRC_LANES] = {-1, -1, -1, -1, 0, 0, 0, 0};
@@ -105,7 +113,8 @@ BRC_LANES_INLINE brc_lanes brc_lanes_sign(brc_lanes a, brc_lanes b)
     return (brc_lanes)(((brc_mask)a & INT64_MAX) | ((brc_mask)b & INT64_MIN));
 }
 
-/* a where a < b, b elsewhere: the machine's instruction does just that. */
+/* a where a < b, b elsewhere: the machine's instruction does just that. So b is what comes of a
+ * NAN in either, unlike fmin, which gives the number. */
 BRC_LANES_INLINE brc_lanes brc_lanes_min(brc_lanes a, brc_lanes b)
 {
 #ifdef __AVX2__
@@ -129,6 +138,8 @@ BRC_LANES_INLINE brc_lanes brc_lanes_sqrt(brc_lanes a)
     return (brc_lanes){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])};
 }
 
+/* In pairs, as two halves of a register are added; no other order may be used, or machines would
+ * differ. */
 BRC_LANES_INLINE double brc_lanes_sum(brc_lanes a)
 {
     return (a[0] + a[1]) + (a[2] + a[3]);
@@ -147,7 +158,9 @@ BRC_LANES_INLINE void brc_lanes_cross(brc_lanes r[3], const brc_lanes a[3], cons
     r[1] = y;
 }
 
-/* Lane i of r[j] becomes lane j of r[i]. */
+/* Lane i of r[j] becomes lane j of r[i]. Values of a grain lie side by side in memory, since one
+ * contact reads all of them: three coordinates for one fetch of a cache line. Loops want them lane
+ * by lane, and these shuffles are the price. */
 BRC_LANES_INLINE void brc_lanes_transpose(brc_lanes r[BRC_LANES])
 {
     brc_lanes even = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6);

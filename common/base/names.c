@@ -37,6 +37,7 @@ int brc_names_distance(const char *a, const char *b)
     return row[nb];
 }
 
+/* The first of equally near names stays, which is the one that lists name first. */
 void brc_nearest_add(struct brc_nearest *n, const char *name)
 {
     int distance = brc_names_distance(n->text, name);

@@ -13,9 +13,11 @@
 
 enum { BAR_WIDTH = 24, LABEL_WIDTH = 12 };
 
-static const double interval_terminal = 0.2, interval_plain = 5; /* s */
-static const double smoothing_time = 30;                         /* s, of the speed */
+/* s: on a terminal as often as an eye follows; in a log seldom, as each line stays. */
+static const double interval_terminal = 0.2, interval_plain = 5;
+static const double smoothing_time = 30; /* s, of the speed */
 
+/* Not the time of day, which may be set while a run goes on. */
 double brc_progress_clock(void)
 {
     struct timespec t;
@@ -38,6 +40,8 @@ static double interval(bool is_often)
     return is_often ? interval_terminal : interval_plain;
 }
 
+/* Terminals without cursor movements (TERM=dumb, or none: editors, batch systems) get plain lines.
+ */
 static bool is_terminal(FILE *out)
 {
     const char *kind = getenv("TERM");
@@ -71,7 +75,8 @@ bool brc_progress_is_due(const struct brc_progress *p)
     return !p->is_quiet && now - p->last_drawn >= interval(p->is_terminal || p->pipe >= 0);
 }
 
-/* Steps a second, smoothed over the last seconds: a step costs more or less as contacts open. */
+/* Steps a second, smoothed over the last seconds: a step costs more or less as contacts open.
+ * Reports that follow at once are kept, but say nothing about the speed. */
 static void store_report(struct brc_progress_run *run, const struct brc_progress_report *report)
 {
     double now = brc_progress_clock(), dt = now - run->time_before;
@@ -88,7 +93,8 @@ static void store_report(struct brc_progress_run *run, const struct brc_progress
     run->time_before = now;
 }
 
-/* "at most 1:20 left": the test may end sooner, when the load has dropped. */
+/* "at most 1:20 left": the test may end sooner, when the load has dropped. Beyond 100 hours the
+ * speed is a guess of the first steps, and says nothing. */
 static const char *time_left(const struct brc_progress_run *run, char *buffer, size_t size)
 {
     char duration[32];
@@ -129,6 +135,8 @@ static void draw_run(const struct brc_progress *p, const struct brc_progress_run
     fputs(p->is_terminal ? "\033[K\n" : "\n", p->out);
 }
 
+/* On a terminal all lines are written over each other, whichever run reported: they are few, and
+ * parts of the screen need not be known. Elsewhere a run that has ended is told of once. */
 static void draw(struct brc_progress *p)
 {
     if (p->is_terminal && p->n_drawn > 0)

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Progress of one or several runs side by side: bars that are redrawn on a terminal, a plain line a
  * run every few seconds elsewhere. A run in a child process sends its reports to the parent through
- * a pipe; the parent draws. */
+ * a pipe; the parent draws, as two processes that move one cursor would spoil each other's lines.
+ * Called by the step loops of runs, and by packing and tessellating, which is why it lies in base;
+ * knows nothing of simulations. */
 #ifndef BRC_PROGRESS_H
 #define BRC_PROGRESS_H
 

@@ -16,6 +16,8 @@ static bool is_ours(int number)
     return sigaction(number, NULL, &now) == 0 && now.sa_handler != SIG_IGN;
 }
 
+/* A handler may call only what POSIX lists as safe in one: write and _exit are, printf and exit are
+ * not. */
 static void leave(int number)
 {
     static const char text[] =

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One block holds all columns of a table. They start at different places of a page's cache sets,
  * since columns that are read together would otherwise evict each other, and large blocks ask for
- * large pages. Rows are a multiple of four, so that vector loops need no remainder. */
+ * large pages. Rows are a multiple of four, so that vector loops need no remainder.
+ *
+ * One array for each field rather than one struct for each row: a loop reads few of the fields, and
+ * those of four rows at once. Knows nothing of what fields mean; which are state, scratch or left
+ * out stands in their list. */
 #define _DEFAULT_SOURCE /* for madvise; NOLINT(bugprone-reserved-identifier) */
 #include "common/base/table.h"
 
@@ -75,7 +79,9 @@ static size_t round_up(size_t n, size_t unit)
     return (n + unit - 1) / unit * unit;
 }
 
-/* One block for all columns of cap rows, and where in it each begins. */
+/* One block for all columns of cap rows, and where in it each begins. Small tables are packed
+ * instead: their columns cannot evict each other, and a skew would be most of the block. Half of
+ * the address space is refused as a size, so that sums of offsets cannot overflow. */
 static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t cap,
                       size_t *offset)
 {
@@ -99,7 +105,8 @@ static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t
 }
 
 /* Allocates new columns of cap rows, filled by from (see brc_table_gather) or by the old rows in
- * order when from is NULL; either all columns change or none. */
+ * order when from is NULL; either all columns change or none. Rows past the last are zeroed up to
+ * the next four, as lanes read them; those beyond are zeroed when they come into use. */
 static int replace_columns(struct brc_context *ctx, struct brc_table *t, const size_t *from,
                            size_t n, size_t cap)
 {
@@ -189,7 +196,9 @@ static bool is_ascending(const size_t *from, size_t n)
 }
 
 /* Rows in ascending order move in the columns that are there: first those that move down, from the
- * first one on, then those that move up, from the last one on. */
+ * first one on, then those that move up, from the last one on. So lists of contacts change: they
+ * are made anew many times in a run, most rows stay where they are, and no second table is needed.
+ */
 static void gather_in_place(struct brc_table *t, const size_t *from, size_t n)
 {
     for (int i = 0; i < t->set.n; i++) {
@@ -228,6 +237,8 @@ void brc_table_free(struct brc_table *t)
     t->n = t->cap = 0;
 }
 
+/* By words of 8 bytes, as states are hashed often and a byte at a time takes eight times as many
+ * steps. */
 uint64_t brc_hash_bytes(const void *data, size_t n, uint64_t seed)
 {
     const unsigned char *bytes = data;
@@ -244,6 +255,7 @@ uint64_t brc_hash_bytes(const void *data, size_t n, uint64_t seed)
     return hash;
 }
 
+/* Names are whole words of the list: "f" must not be found in "fs". */
 static bool is_named(const char *names, const char *name)
 {
     size_t size = strlen(name);
@@ -262,6 +274,7 @@ void brc_table_leave_out(struct brc_table *t, const char *names)
             t->left_out |= UINT64_C(1) << i;
 }
 
+/* A mask of 64 bits: what is left out stands among the first 64 fields of its list. */
 bool brc_table_saves(const struct brc_table *t, int field)
 {
     bool is_left_out = field < 64 && (t->left_out >> field & 1);

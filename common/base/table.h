@@ -14,6 +14,10 @@
  *         LAW_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)
  *     };
  *     #undef BRC_OWNER
+ *
+ * The list exists as the program is compiled, so that loops read plain members of a struct, with
+ * their types, and pay nothing for the table. A register that is filled as the program runs would
+ * cost a look-up by name, and a misspelt name would be found late.
  */
 #ifndef BRC_TABLE_H
 #define BRC_TABLE_H
@@ -70,7 +74,7 @@ struct brc_table {
     const char *name; /* group name in output files */
     struct brc_fieldset set;
     void *columns;     /* the owner struct: column pointers at the fields' offsets */
-    size_t n, cap;     /* rows in use, rows allocated */
+    size_t n, cap;     /* rows in use, rows allocated; cap never falls */
     void *block;       /* memory of all columns */
     uint64_t left_out; /* bits of the fields that hold nothing here: neither saved nor hashed */
 };
@@ -102,7 +106,9 @@ double brc_table_number(const struct brc_table *t, int field, size_t k);
 size_t brc_field_size(const struct brc_field *f);
 size_t brc_type_size(enum brc_type type);
 
-/* 64-bit hash (FNV-1a over 8-byte words) of all BRC_STATE columns, chained from seed. */
+/* 64-bit hash (FNV-1a over 8-byte words) of all BRC_STATE columns, chained from seed. It tells
+ * whether two states are the same bits and is part of file formats, so it must not change. It is no
+ * guard against intent. */
 uint64_t brc_table_hash(const struct brc_table *t, uint64_t seed);
 uint64_t brc_hash_bytes(const void *data, size_t n, uint64_t seed);
 #define BRC_HASH_SEED UINT64_C(0xcbf29ce484222325)

@@ -5,6 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
+/* Beside its place and not in a folder for temporary files, since rename works within one file
+ * system only. */
 int brc_text_file_begin(struct brc_context *ctx, struct brc_text_file *t, const char *dir,
                         const char *name)
 {

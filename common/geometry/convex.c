@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A box that half-spaces cut one by one. Each vertex is classed once a cut and each cut edge has
  * one new vertex, so that neighbouring faces cannot disagree about a point within rounding of the
- * plane. Far from the origin the work is done near the body's middle, where no digits are lost. */
+ * plane. Far from the origin the work is done near the body's middle, where no digits are lost.
+ *
+ * Lists are searched from end to end: a cut meets few edges, and a hash would cost more than it
+ * saves for faces of five or six sides. Prisms of a thousand sides, the most that a case may ask
+ * for, are made once a run. */
 #include "common/geometry/convex.h"
 
 #include "common/base/grow.h"
@@ -119,7 +123,9 @@ static int scratch_reserve(struct brc_context *ctx, struct brc_convex *c)
     return brc_convex_reserve(ctx, c, vertices, n_faces, loop);
 }
 
-/* Number of the vertex where the plane cuts the edge u-v; made at the first call. */
+/* The place is computed from the lower to the higher vertex, whichever way the face runs, so that
+ * it has the same bits when the neighbouring face asks first. Number of the vertex where the plane
+ * cuts the edge u-v; made at the first call. */
 static int32_t cut_vertex(struct brc_convex *c, struct scratch *s, int32_t u, int32_t v)
 {
     int32_t low = u < v ? u : v, high = u < v ? v : u;
@@ -142,7 +148,8 @@ static void add_face(struct brc_convex *clipped, const struct brc_plane *plane, 
     clipped->first[clipped->n_faces] = end;
 }
 
-/* Adds the part of face f inside the plane, and its edges in the plane. */
+/* Adds the part of face f inside the plane, and its edges in the plane. A face with no vertex
+ * strictly inside goes, also where it lies in the plane: the new face takes its place there. */
 static void clip_face(struct brc_convex *c, struct scratch *s, size_t f)
 {
     size_t begin = s->clipped.first[s->clipped.n_faces], end = begin;
@@ -169,7 +176,8 @@ static void clip_face(struct brc_convex *c, struct scratch *s, size_t f)
     add_face(&s->clipped, &c->plane[f], end);
 }
 
-/* Removes pairs of opposite edges: these have a kept face on both sides. */
+/* Removes pairs of opposite edges: these have a kept face on both sides. So it is where the plane
+ * only touches the body along an edge. */
 static void cancel_edges(struct scratch *s)
 {
     for (size_t i = 0; i < s->n_edges; i++)
@@ -182,7 +190,9 @@ static void cancel_edges(struct scratch *s)
             }
 }
 
-/* The open edges, walked backwards, bound the new face. */
+/* The open edges, walked backwards, bound the new face. They fail to do so only where vertices
+ * within the tolerance were classed in a way that no convex body has; the caller then tries another
+ * one. */
 static int close_with_face(struct brc_context *ctx, struct scratch *s,
                            const struct brc_plane *plane)
 {
@@ -278,6 +288,8 @@ static int clip_box(struct brc_context *ctx, struct brc_convex *c, const struct 
     return 0;
 }
 
+/* Failures go to a context of their own, as all but the last are no failures of the caller. The
+ * labels of the box tell whether the planes alone bound the body. */
 int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
                            const struct brc_plane *planes, size_t n, const double centre[3],
                            double half_width)
@@ -301,6 +313,8 @@ int brc_convex_from_planes(struct brc_context *ctx, struct brc_convex *c,
     return 0;
 }
 
+/* In long double: d and n . by may nearly cancel, and what is left must have the digits of the body
+ * and not those of its distance. */
 void brc_planes_shift(struct brc_plane *plane, size_t n, const double by[3])
 {
     for (size_t i = 0; i < n; i++) {
@@ -329,7 +343,9 @@ void brc_convex_origin(const double middle[3], double reach, double origin[3])
         origin[k] = step * nearbyint(middle[k] / step);
 }
 
-/* Whether two planes differ by less than the tolerance within reach of the middle. */
+/* Whether two planes differ by less than the tolerance within reach of the middle. Equal normals
+ * and distances are not asked for: files round both, and what counts is where the planes run within
+ * the body. */
 static bool is_same_plane(const struct brc_plane *p, const struct brc_plane *q,
                           const double middle[3], double reach, double tolerance)
 {
@@ -339,7 +355,9 @@ static bool is_same_plane(const struct brc_plane *p, const struct brc_plane *q,
     return fabs(apart) + reach * brc_norm(turn) <= tolerance;
 }
 
-/* Drops planes that come again; returns the number of those that stay. */
+/* Drops planes that come again; returns the number of those that stay. A surface of triangles has
+ * each of its planes many times, and cuts by all of them would leave slivers as wide as their
+ * differences. */
 static size_t unique_planes(struct brc_plane *plane, size_t n, const double middle[3], double reach,
                             double tolerance)
 {
@@ -354,6 +372,8 @@ static size_t unique_planes(struct brc_plane *plane, size_t n, const double midd
     return m;
 }
 
+/* The first body is made in a box that holds whatever the planes may enclose, with a tolerance to
+ * match, and tells only where it is and how large; the second has the digits. */
 int brc_convex_enclosed(struct brc_context *ctx, struct brc_convex *c,
                         const struct brc_plane *planes, size_t n, double digits)
 {
@@ -395,11 +415,8 @@ size_t brc_convex_face(const struct brc_convex *c, int32_t id)
 double brc_convex_reach(const struct brc_convex *c, const double from[3])
 {
     double reach = 0;
-    for (size_t v = 0; v < c->n_vertices; v++) {
-        double r[3];
-        brc_sub(r, c->vertex[v], from);
-        reach = fmax(reach, brc_norm(r));
-    }
+    for (size_t v = 0; v < c->n_vertices; v++)
+        reach = fmax(reach, brc_distance(c->vertex[v], from));
     return reach;
 }
 
@@ -445,6 +462,8 @@ void brc_convex_mass(const struct brc_convex *c, double *volume, double centroid
             inertia[i][j] = (i == j ? trace : 0) - second[i][j];
 }
 
+/* A fan about the first vertex, and relative to it: neighbours see the same polygon with the same
+ * digits, wherever it is. */
 double brc_polygon_area(double (*vertex)[3], const int32_t *loop, size_t n, const double normal[3],
                         double centroid[3])
 {

@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Convex polyhedra: made by clipping with half-spaces, measured, eroded. Used by the tessellation
- * (cells, domains) and by the polyhedra model (eroded cores). */
+ * (cells, domains) and by the polyhedra model (eroded cores). One body at a time: cells that must
+ * agree about the polygons between them are cut together as a complex (specimen/cell_complex.h). By
+ * clipping rather than by a hull of the dual points: labels of the planes survive, and what counts
+ * as on a plane is decided here, once for each vertex. */
 #ifndef BRC_CONVEX_H
 #define BRC_CONVEX_H
 
 #include "common/base/error.h"
 
-/* Half-space n . x <= d with unit normal n, and a label that survives clipping. */
+/* Half-space n . x <= d [m] with unit normal n, and a label that survives clipping: the facet or
+ * the part of the boundary that a face stems from. */
 struct brc_plane {
     double n[3];
     double d;
@@ -62,10 +66,13 @@ size_t brc_convex_face(const struct brc_convex *c, int32_t id);
 /* Largest distance from a point to a vertex. */
 double brc_convex_reach(const struct brc_convex *c, const double from[3]);
 
-/* Volume, centroid, and inertia tensor about the centroid for unit density (row major). */
+/* Volume [m3], centroid [m], and inertia tensor [m5] about the centroid for unit density (row
+ * major). Summed about the mean of the vertices, as tetrahedra over a far origin would cancel. */
 void brc_convex_mass(const struct brc_convex *c, double *volume, double centroid[3],
                      double inertia[3][3]);
-/* Area and centroid of a plane polygon given by its vertices in order; normal is a unit vector. */
+/* Area [m2] and centroid [m] of a plane polygon given by its vertices in order; normal is a unit
+ * vector. The area is negative where the loop turns clockwise about the normal: callers see by it
+ * that a facet is inside out. */
 double brc_polygon_area(double (*vertex)[3], const int32_t *loop, size_t n, const double normal[3],
                         double centroid[3]);
 

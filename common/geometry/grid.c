@@ -39,6 +39,8 @@ int brc_neighbours_add(struct brc_context *ctx, struct brc_neighbours *c, size_t
     return 0;
 }
 
+/* The factors are odd numbers with no pattern in their bits, so that neighbouring cells get buckets
+ * far apart. Which ones does not show in any result, since pairs are sorted. */
 static size_t bucket_of(const struct grid *g, const int64_t at[3])
 {
     uint64_t h = (uint64_t)at[0] * UINT64_C(0x9e3779b97f4a7c15) ^
@@ -52,6 +54,8 @@ static double radius_of(const struct grid *g, size_t i)
     return g->radius ? g->radius[i] : 0;
 }
 
+/* Twice as many buckets as bodies or more, so that few hold bodies of two cells. Bodies of a bucket
+ * stand side by side in one array: lists of pointers would fetch a cache line for each body. */
 static int grid_fill(struct brc_context *ctx, struct grid *g, struct brc_pool *pool)
 {
     g->n_buckets = 16;
@@ -65,15 +69,13 @@ static int grid_fill(struct brc_context *ctx, struct grid *g, struct brc_pool *p
     for (size_t i = 0; i < g->n; i++) {
         for (int k = 0; k < 3; k++)
             g->at[i][k] = (int64_t)floor(g->x[i][k] / g->cell);
-        g->first[bucket_of(g, g->at[i]) + 1]++;
+        g->first[bucket_of(g, g->at[i])]++;
     }
+    /* counts become ends, and filling from the last body on turns ends into starts */
     for (size_t b = 0; b < g->n_buckets; b++)
         g->first[b + 1] += g->first[b];
-    for (size_t i = 0; i < g->n; i++)
-        g->body[g->first[bucket_of(g, g->at[i])]++] = (uint32_t)i;
-    for (size_t b = g->n_buckets; b > 0; b--)
-        g->first[b] = g->first[b - 1];
-    g->first[0] = 0;
+    for (size_t i = g->n; i-- > 0;)
+        g->body[--g->first[bucket_of(g, g->at[i])]] = (uint32_t)i;
     return 0;
 }
 

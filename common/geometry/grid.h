@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Broad phase: pairs of bodies whose bounding spheres come within a skin, sorted by (low, high).
- * Cells are hashed, so memory is bounded by the number of bodies wherever they are. */
+ * Cells are hashed, so memory is bounded by the number of bodies wherever they are. Called by the
+ * neighbour search of a run, by packing, and by whatever looks for points that nearly coincide;
+ * knows spheres only. Limit: the cell is that of the largest body, so that many small
+ * ones beside a few large ones fill it; a tree would serve these better. */
 #ifndef BRC_GRID_H
 #define BRC_GRID_H
 

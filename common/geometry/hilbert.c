@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 
+/* Three coordinates of 21 bits fill a key of 63. */
 enum { BITS = 21 };
 
 struct entry {
@@ -39,6 +40,7 @@ static uint64_t hilbert_key(uint32_t x[3])
     return key;
 }
 
+/* Points of one lattice cell keep their order, as qsort alone would not promise. */
 static int by_key(const void *a, const void *b)
 {
     const struct entry *p = a, *q = b;
@@ -47,6 +49,8 @@ static int by_key(const void *a, const void *b)
     return p->point < q->point ? -1 : p->point > q->point;
 }
 
+/* One scale for all axes: in a stretched lattice, near points of the curve would be far apart along
+ * the long side. */
 int brc_hilbert_order(struct brc_context *ctx, double (*x)[3], size_t n, size_t *order)
 {
     double low[3], high[3], edge = 0;

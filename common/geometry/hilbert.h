@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Order along the Hilbert curve: neighbours in the order are neighbours in space. */
+/* Order along the Hilbert curve: neighbours in the order are neighbours in space. Grains are
+ * numbered so once, as a specimen is made, and loops over contacts then find both grains in the
+ * cache; they are not numbered anew later, as numbers are names in files. */
 #ifndef BRC_HILBERT_H
 #define BRC_HILBERT_H
 

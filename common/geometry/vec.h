@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* 3-vectors and quaternions (scalar first, body to space). Static inline, no state. Output
- * arguments come first and may alias inputs unless said otherwise. */
+ * arguments come first and may alias inputs unless said otherwise.
+ *
+ * Plain arrays rather than a struct of x, y, z: columns of tables, HDF5 and loops over axes have
+ * them in this form, and no conversion stands between. Products are added from left to right and
+ * never fused (-ffp-contract=off), as restarts and other machines must give the same bits. */
 #ifndef BRC_VEC_H
 #define BRC_VEC_H
 
@@ -60,6 +64,13 @@ static inline double brc_norm(const double a[3])
     return sqrt(brc_dot(a, a));
 }
 
+static inline double brc_distance(const double a[3], const double b[3])
+{
+    double r[3];
+    brc_sub(r, b, a);
+    return brc_norm(r);
+}
+
 /* r = a / |a|, returns |a|; a zero vector stays zero. */
 static inline double brc_normalise(double r[3], const double a[3])
 {
@@ -68,7 +79,8 @@ static inline double brc_normalise(double r[3], const double a[3])
     return length;
 }
 
-/* Two unit vectors s, t with s x t = n, for a unit vector n. */
+/* Two unit vectors s, t with s x t = n, for a unit vector n. s is normal to the axis that n is
+ * least along, so that the cross product is never near zero. */
 static inline void brc_frame(double s[3], double t[3], const double n[3])
 {
     double e[3] = {0, 0, 0};
@@ -111,14 +123,6 @@ static inline void brc_mat_mul_t(double r[3], double m[3][3], const double a[3])
     brc_set(r, m[0][0] * a[0] + m[1][0] * a[1] + m[2][0] * a[2],
             m[0][1] * a[0] + m[1][1] * a[1] + m[2][1] * a[2],
             m[0][2] * a[0] + m[1][2] * a[1] + m[2][2] * a[2]);
-}
-
-/* r = q a q* (body to space). */
-static inline void brc_quat_rotate(double r[3], const double q[4], const double a[3])
-{
-    double m[3][3], b[3] = {a[0], a[1], a[2]};
-    brc_quat_matrix(m, q);
-    brc_mat_mul(r, m, b);
 }
 
 /* Unit quaternion of a rotation by |phi| about phi. The turns of a step are small: their series are

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Called through the communicator alone, so that nothing else knows MPI. */
 #include "common/parallel/comm.h"
 
 #include <mpi.h>
@@ -27,6 +28,8 @@ static bool comm_is_up(void)
     return is_started && !is_ended;
 }
 
+/* MPI_Allreduce would do, but may add in an order that changes with the number of ranks and with
+ * the network; gathered, the parts are added in rank order by everyone. They are few. */
 static int sum(struct brc_context *ctx, const struct brc_comm *comm, double *values, int n)
 {
     size_t size = (size_t)comm->size;
@@ -55,6 +58,7 @@ int brc_comm_start(struct brc_context *ctx, struct brc_comm *comm)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI was ended; it cannot start again in this process");
     if (!comm_is_up() && MPI_Init(NULL, NULL) != MPI_SUCCESS)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "MPI did not start");
+    /* the default handler ends the program where an error could be told */
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     comm->sum = sum;
     MPI_Comm_rank(MPI_COMM_WORLD, &comm->rank);

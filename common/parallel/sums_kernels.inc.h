@@ -6,6 +6,8 @@
 #include "common/base/lanes.h"
 #include "common/parallel/sums.h"
 
+/* Digits of a double, and the largest exponent for which sigma and sums of the multiples, both
+ * 2^count times a term and more, stay finite. */
 enum { TERM_BITS = 53, LARGEST_EXPONENT = 960 };
 
 /* The last n terms, fewer than lanes; zeros behind them change neither the largest nor the sum. */
@@ -31,7 +33,9 @@ static double largest(const double *x, size_t n)
     return brc_lanes_sum(wrong) == 0 ? all : NAN;
 }
 
-/* Adds four terms, each cut by either sigma. */
+/* Adds four terms, each cut by either sigma. Adding 1.5 times a power of two and taking it away
+ * again rounds to a multiple of its last digit; 1.5, so that negative terms do not change the
+ * exponent. Compilers must not simplify it: no -ffast-math. */
 static inline void add_cut(brc_lanes sum[2], brc_lanes a, const double sigma[2])
 {
     brc_lanes cut = (a + sigma[0]) - sigma[0];

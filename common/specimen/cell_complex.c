@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clipping decides by vertex and cuts by edge. The cut edges are sorted and each gets one new
  * vertex, so two cells that share an edge get the same vertex, bit for bit, and no crack opens
- * between them. */
+ * between them.
+ *
+ * Facets that a cut shortens get a new loop at the end of the pool, and the old one stays as a gap:
+ * loops never move while others are read, and the complex lives for one tessellation only. */
 #include "common/specimen/cell_complex.h"
 
 #include "common/base/invariant.h"
@@ -30,11 +33,15 @@ struct edges {
 struct clip {
     struct brc_cell_complex *c;
     const struct brc_plane *plane;
-    size_t n_old;      /* vertices before the cut */
-    double *height;    /* [n_old] signed distance from the plane */
-    int8_t *side;      /* [n_old] */
-    uint8_t *is_hit;   /* [n_cells] the cell lost something */
-    uint8_t *is_alive; /* [n_cells] the cell keeps something */
+    size_t n_old; /* vertices before the cut */
+    struct vertex {
+        double height; /* signed distance from the plane */
+        int32_t side;
+    } * vertex; /* [n_old] */
+    struct cell {
+        bool is_hit;   /* it lost something */
+        bool is_alive; /* it keeps something */
+    } * cell;          /* [n_cells] */
     uint8_t *state;    /* [n_facets] which sides the facet's vertices are on, see enum */
     int32_t *work;     /* one loop under construction */
     size_t cap_work;
@@ -93,21 +100,22 @@ size_t brc_cell_complex_empty_cells(const struct brc_cell_complex *c, uint8_t *i
     return n;
 }
 
+/* A vertex is inside, outside or on the plane from here on, whatever is later computed from its
+ * place: each question is answered by these sides alone. */
 static int clip_begin(struct brc_context *ctx, struct clip *w, double tolerance)
 {
     struct brc_cell_complex *c = w->c;
     w->n_old = c->n_vertices;
-    w->height = brc_pool_alloc(ctx, &w->pool, w->n_old, sizeof *w->height);
-    w->side = brc_pool_alloc(ctx, &w->pool, w->n_old, sizeof *w->side);
-    w->is_hit = brc_pool_alloc(ctx, &w->pool, c->n_cells, 1);
-    w->is_alive = brc_pool_alloc(ctx, &w->pool, c->n_cells, 1);
+    w->vertex = brc_pool_alloc(ctx, &w->pool, w->n_old, sizeof *w->vertex);
+    w->cell = brc_pool_alloc(ctx, &w->pool, c->n_cells, sizeof *w->cell);
     w->state = brc_pool_alloc(ctx, &w->pool, c->n_facets, 1);
-    if (!w->height || !w->side || !w->is_hit || !w->is_alive || !w->state)
+    if (w->pool.is_failed)
         return BRC_ERR_MEMORY;
     for (size_t v = 0; v < w->n_old; v++) {
         double h = brc_dot(w->plane->n, c->vertex[v]) - w->plane->d;
-        w->height[v] = h;
-        w->side[v] = h > tolerance ? SIDE_OUT : h < -tolerance ? SIDE_IN : SIDE_ON;
+        w->vertex[v] = (struct vertex){h, h > tolerance    ? SIDE_OUT
+                                          : h < -tolerance ? SIDE_IN
+                                                           : SIDE_ON};
     }
     return 0;
 }
@@ -115,7 +123,7 @@ static int clip_begin(struct brc_context *ctx, struct clip *w, double tolerance)
 /* New vertices are on the plane. */
 static int side_of(const struct clip *w, int32_t v)
 {
-    return (size_t)v < w->n_old ? w->side[v] : SIDE_ON;
+    return (size_t)v < w->n_old ? w->vertex[v].side : SIDE_ON;
 }
 
 static struct edge edge_of(int32_t cell, int32_t from, int32_t to)
@@ -132,7 +140,8 @@ static int push_edge(struct brc_context *ctx, struct edges *edges, struct edge e
 }
 
 /* Finds the edges that cross the plane, marks the cells that lose or keep something, and removes
- * the facets without a vertex inside. */
+ * the facets without a vertex inside. One that lies in the plane goes, too: its cell is closed anew
+ * there, by a facet with the plane's label. */
 static int find_cuts(struct brc_context *ctx, struct clip *w)
 {
     struct brc_cell_complex *c = w->c;
@@ -141,25 +150,26 @@ static int find_cuts(struct brc_context *ctx, struct clip *w)
         const int32_t *loop = c->loop + facet->first;
         static const uint8_t state[3] = {HAS_IN, HAS_ON, HAS_OUT};
         for (int32_t i = 0; i < facet->n; i++)
-            w->state[f] |= state[w->side[loop[i]] + 1];
+            w->state[f] |= state[w->vertex[loop[i]].side + 1];
         bool has_in = w->state[f] & HAS_IN, has_out = w->state[f] & HAS_OUT;
         for (int k = 0; k < 2 && facet->n > 0; k++)
             if (facet->cell[k] >= 0) {
-                w->is_alive[facet->cell[k]] |= has_in;
-                w->is_hit[facet->cell[k]] |= has_out || !has_in;
+                w->cell[facet->cell[k]].is_alive |= has_in;
+                w->cell[facet->cell[k]].is_hit |= has_out || !has_in;
             }
         if (!has_in)
             facet->n = 0;
         for (int32_t i = 0; i < facet->n && has_out; i++) {
             int32_t u = loop[i], v = loop[i + 1 < facet->n ? i + 1 : 0];
-            if (w->side[u] * w->side[v] < 0)
+            if (w->vertex[u].side * w->vertex[v].side < 0)
                 BRC_TRY(push_edge(ctx, &w->cut, edge_of(0, u < v ? u : v, u < v ? v : u)));
         }
     }
     return 0;
 }
 
-/* One vertex for each cut edge; its number is n_old + position in the sorted list. */
+/* One vertex for each cut edge; its number is n_old + position in the sorted list. An edge has been
+ * found once from each facet around it, and sorting brings these together. */
 static int make_vertices(struct brc_context *ctx, struct clip *w)
 {
     struct edge *cut = w->cut.list;
@@ -173,7 +183,7 @@ static int make_vertices(struct brc_context *ctx, struct clip *w)
     w->cut.n = n;
     for (size_t i = 0; i < n; i++) {
         int32_t u = cut[i].from, v = cut[i].to;
-        double t = w->height[u] / (w->height[u] - w->height[v]), x[3], e[3];
+        double t = w->vertex[u].height / (w->vertex[u].height - w->vertex[v].height), x[3], e[3];
         brc_sub(e, w->c->vertex[v], w->c->vertex[u]);
         brc_copy(x, w->c->vertex[u]);
         brc_axpy(x, t, e);
@@ -189,7 +199,9 @@ static int32_t cut_vertex(const struct clip *w, int32_t u, int32_t v)
     return (int32_t)(w->n_old + (size_t)(hit - w->cut.list));
 }
 
-/* Replaces the loop of a facet by its part inside; the new loop lies at the end of the pool. */
+/* Replaces the loop of a facet by its part inside; the new loop lies at the end of the pool. A
+ * convex polygon leaves a half-plane once: one that does so twice has been bent by merging, and
+ * would be two polygons. */
 static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
 {
     struct brc_cell_complex *c = w->c;
@@ -200,11 +212,11 @@ static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
     for (int32_t i = 0; i < n; i++) {
         const int32_t *loop = c->loop + c->facet[f].first;
         int32_t u = loop[i], v = loop[i + 1 < n ? i + 1 : 0];
-        if (w->side[u] != SIDE_OUT)
+        if (w->vertex[u].side != SIDE_OUT)
             w->work[n_new++] = u;
-        if (w->side[u] * w->side[v] < 0)
+        if (w->vertex[u].side * w->vertex[v].side < 0)
             w->work[n_new++] = cut_vertex(w, u, v);
-        n_leave += w->side[u] != SIDE_OUT && w->side[v] == SIDE_OUT;
+        n_leave += w->vertex[u].side != SIDE_OUT && w->vertex[v].side == SIDE_OUT;
     }
     if (n_leave > 1)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
@@ -218,7 +230,8 @@ static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
     return 0;
 }
 
-/* Collects the edges in the plane of all facets of the cells that lost something. */
+/* Collects the edges in the plane of all facets of the cells that lost something; those of a
+ * facet's second cell turned, as it sees the facet from behind. */
 static int find_open_edges(struct brc_context *ctx, struct clip *w)
 {
     struct brc_cell_complex *c = w->c;
@@ -227,7 +240,7 @@ static int find_open_edges(struct brc_context *ctx, struct clip *w)
         const int32_t *loop = c->loop + facet->first;
         for (int k = 0; k < 2 && (w->state[f] & (HAS_ON | HAS_OUT)); k++) {
             int32_t cell = facet->cell[k];
-            if (cell < 0 || !w->is_hit[cell])
+            if (cell < 0 || !w->cell[cell].is_hit)
                 continue;
             for (int32_t i = 0; i < facet->n; i++) {
                 int32_t u = loop[i], v = loop[i + 1 < facet->n ? i + 1 : 0];
@@ -239,7 +252,8 @@ static int find_open_edges(struct brc_context *ctx, struct clip *w)
     return 0;
 }
 
-/* Drops pairs of opposite edges: there the cell has a facet on both sides. */
+/* Drops pairs of opposite edges: there the cell has a facet on both sides. Sorting brings them next
+ * to each other, as the key is the edge first and its direction last. */
 static void cancel_edges(struct edges *open)
 {
     size_t n = 0;
@@ -255,7 +269,9 @@ static void cancel_edges(struct edges *open)
     open->n = n;
 }
 
-/* Closes one cell: its n open edges, walked backwards, bound its new facets. */
+/* Closes one cell: its n open edges, walked backwards, bound its new facets. Several loops are
+ * facets of their own here; finish allows each cell one facet for each plane, and tells where there
+ * are more. */
 static int close_cell(struct brc_context *ctx, struct clip *w, struct edge *open, size_t n)
 {
     struct brc_cell_complex_facet facet = {{open->cell, -1}, w->plane->id, 0, 0, {0, 0, 0}};
@@ -292,7 +308,7 @@ static int close_cells(struct brc_context *ctx, struct clip *w)
     for (size_t i = 0, end; i < w->open.n; i = end) {
         for (end = i; end < w->open.n && open[end].cell == open[i].cell; end++)
             continue;
-        if (w->is_alive[open[i].cell])
+        if (w->cell[open[i].cell].is_alive)
             BRC_TRY(close_cell(ctx, w, open + i, end - i));
     }
     return 0;

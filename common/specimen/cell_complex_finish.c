@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The last steps of a complex: boundary vertices onto their planes, order, measures. */
+/* The last steps of a complex: boundary vertices onto their planes, order, measures. Numbers of
+ * facets and vertices are settled here, from those of the cells alone, so that they do not show in
+ * what order CGAL or a file had them. */
 #include "common/specimen/cell_complex.h"
 
 #include "common/base/invariant.h"
@@ -21,7 +23,8 @@ struct key {
 };
 
 /* Moves x onto n planes, one after the other, each time along the planes that came before. A plane
- * that (nearly) follows from these is met already. */
+ * that (nearly) follows from these is met already. Least squares over all of them would leave x
+ * near each plane and on none. */
 static void move_onto(double x[3], const struct brc_convex *domain, const struct incidence *list,
                       size_t n)
 {
@@ -118,7 +121,8 @@ static int allocate(struct brc_context *ctx, const struct brc_cell_complex *c, s
     return pool->is_failed ? BRC_ERR_MEMORY : 0;
 }
 
-/* Copies the facets in order; vertices are numbered as they come. number is all -1. */
+/* Copies the facets in order; vertices are numbered as they come, so that those of a facet are near
+ * in memory and those that no facet has are left behind. number is all -1. */
 static void copy_facets(const struct brc_cell_complex *c, const struct key *keys, int32_t *number,
                         struct brc_facets *out)
 {
@@ -144,26 +148,25 @@ static void copy_facets(const struct brc_cell_complex *c, const struct key *keys
     }
 }
 
-/* Facets of each cell in ascending order. */
+/* Facets of each cell in ascending order: counts become ends, and filling from the last facet on
+ * turns ends into starts. */
 static void list_cells(struct brc_facets *out)
 {
     for (size_t f = 0; f < out->n_facets; f++)
         for (int k = 0; k < 2; k++)
             if (out->cell[f][k] >= 0)
-                out->cell_first[out->cell[f][k] + 1]++;
+                out->cell_first[out->cell[f][k]]++;
     for (size_t i = 0; i < out->n_cells; i++)
         out->cell_first[i + 1] += out->cell_first[i];
-    for (size_t f = 0; f < out->n_facets; f++)
+    for (size_t f = out->n_facets; f-- > 0;)
         for (int k = 0; k < 2; k++)
             if (out->cell[f][k] >= 0)
-                out->cell_facet[out->cell_first[out->cell[f][k]]++] = (int32_t)f;
-    for (size_t i = out->n_cells; i > 0; i--)
-        out->cell_first[i] = out->cell_first[i - 1];
-    out->cell_first[0] = 0;
+                out->cell_facet[--out->cell_first[out->cell[f][k]]] = (int32_t)f;
 }
 
 /* Volume and centroid from cones of the facets' triangles over the seed. Both cells of a facet see
- * the same triangles, so the volumes sum to the domain. */
+ * the same triangles, so the volumes sum to the domain. Any point would do as the top; the seed is
+ * inside, where the cones are positive and nothing cancels. */
 static void measure_cell(struct brc_facets *out, size_t cell)
 {
     double volume = 0, moment[3] = {0, 0, 0};

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Facets of a cell that lie in one plane are gathered first and moved as one face: planes that
- * differ in their last digits would cut slivers off each other. */
+ * differ in their last digits would cut slivers off each other. The core is then made anew from the
+ * moved planes, rather than by moving vertices: edges and faces vanish as a cell erodes, and
+ * clipping finds out which. */
 #include "common/specimen/erosion.h"
 
 #include "common/base/grow.h"
@@ -24,22 +26,9 @@ void brc_erosion_free(struct brc_erosion *e)
     brc_convex_free(&e->cell);
     brc_convex_free(&e->core);
     free(e->plane);
-    free(e->moved);
-    free(e->leader);
-    free(e->share);
+    free(e->facet);
     free(e->polygon);
     memset(e, 0, sizeof *e);
-}
-
-static int reserve(struct brc_context *ctx, struct brc_erosion *e, size_t n)
-{
-    size_t cap = e->cap, cap_moved = e->cap, cap_leader = e->cap, cap_share = e->cap;
-    BRC_GROW(ctx, e->plane, cap, n);
-    BRC_GROW(ctx, e->moved, cap_moved, n);
-    BRC_GROW(ctx, e->leader, cap_leader, n);
-    BRC_GROW(ctx, e->share, cap_share, n);
-    e->cap = cap;
-    return 0;
 }
 
 static size_t facet_of(const struct brc_erosion *e, size_t k)
@@ -47,7 +36,9 @@ static size_t facet_of(const struct brc_erosion *e, size_t k)
     return (size_t)e->facets->cell_facet[e->facets->cell_first[e->index] + k];
 }
 
-/* Whether the cell's k-th facet lies in the plane of the i-th, which is no smaller. */
+/* Whether the cell's k-th facet lies in the plane of the i-th, which is no smaller. By its vertices
+ * and not by its normal, which means little for a small facet; what may be off grows with the
+ * distance from the larger one, whose plane is known to its digits over its width. */
 static bool is_in_plane(const struct brc_erosion *e, size_t i, size_t k)
 {
     const struct brc_facets *f = e->facets;
@@ -66,25 +57,27 @@ static bool is_in_plane(const struct brc_erosion *e, size_t i, size_t k)
     return true;
 }
 
-/* The largest facet without a leader, n when there is none. */
+/* The largest facet without a leader, n when there is none. Largest first, since a plane is known
+ * the better the wider its facet is. */
 static size_t next_leader(const struct brc_erosion *e)
 {
     size_t best = e->n;
     for (size_t k = 0; k < e->n; k++)
-        if (e->leader[k] < 0 &&
+        if (e->facet[k].leader < 0 &&
             (best == e->n || e->facets->area[facet_of(e, k)] > e->facets->area[facet_of(e, best)]))
             best = k;
     return best;
 }
 
-/* The plane of i becomes that of all facets it leads, weighted by their areas. */
+/* The plane of i becomes that of all facets it leads, weighted by their areas: planes of small
+ * facets count for as little as they are known. */
 static void average_plane(struct brc_erosion *e, size_t i)
 {
     double n[3] = {0, 0, 0}, at[3] = {0, 0, 0}, area = 0;
     for (size_t k = 0; k < e->n; k++) {
         size_t facet = facet_of(e, k);
         double r[3];
-        if (e->leader[k] != (int32_t)i)
+        if (e->facet[k].leader != (int32_t)i)
             continue;
         brc_sub(r, e->facets->centroid[facet], e->facets->centroid[facet_of(e, i)]);
         brc_axpy(n, e->facets->area[facet], e->plane[k].n);
@@ -100,16 +93,16 @@ static void average_plane(struct brc_erosion *e, size_t i)
 static void group_facets(struct brc_erosion *e)
 {
     for (size_t k = 0; k < e->n; k++) {
-        e->leader[k] = -1;
-        e->share[k] = 0;
+        e->facet[k].leader = -1;
+        e->facet[k].share = 0;
     }
     for (size_t i; (i = next_leader(e)) < e->n;) {
         for (size_t k = 0; k < e->n; k++)
-            if (e->leader[k] < 0 && (k == i || is_in_plane(e, i, k))) {
-                e->leader[k] = (int32_t)i;
-                e->share[i]++;
+            if (e->facet[k].leader < 0 && (k == i || is_in_plane(e, i, k))) {
+                e->facet[k].leader = (int32_t)i;
+                e->facet[i].share++;
             }
-        if (e->share[i] > 1)
+        if (e->facet[i].share > 1)
             average_plane(e, i);
     }
 }
@@ -120,7 +113,8 @@ int brc_erosion_begin(struct brc_context *ctx, struct brc_erosion *e, const stru
     e->facets = f;
     e->index = cell;
     e->n = f->cell_first[cell + 1] - f->cell_first[cell];
-    BRC_TRY(reserve(ctx, e, e->n));
+    BRC_GROW(ctx, e->plane, e->cap_plane, 2 * e->n);
+    BRC_GROW(ctx, e->facet, e->cap_facet, e->n);
     BRC_TRY(brc_facets_cell(ctx, f, cell, &e->cell));
     brc_facets_cell_planes(f, cell, e->plane);
     group_facets(e);
@@ -130,17 +124,19 @@ int brc_erosion_begin(struct brc_context *ctx, struct brc_erosion *e, const stru
 int brc_erosion_core(struct brc_context *ctx, struct brc_erosion *e, double radius,
                      const double centre[3])
 {
+    struct brc_plane *moved = e->plane + e->n;
     size_t n = 0;
     for (size_t k = 0; k < e->n; k++)
-        if (e->leader[k] == (int32_t)k) {
-            e->moved[n] = e->plane[k];
-            e->moved[n++].d -= radius;
+        if (e->facet[k].leader == (int32_t)k) {
+            moved[n] = e->plane[k];
+            moved[n++].d -= radius;
         }
-    return brc_convex_from_planes(ctx, &e->core, e->moved, n, centre,
+    return brc_convex_from_planes(ctx, &e->core, moved, n, centre,
                                   2 * brc_convex_reach(&e->cell, centre));
 }
 
-/* Keeps the part of a polygon on the inner side of a facet's edge u-v; returns its length. */
+/* Keeps the part of a polygon on the inner side of a facet's edge u-v; returns its length. One edge
+ * after the other, this is Sutherland and Hodgman's intersection of two convex polygons. */
 static size_t cut_polygon(const double (*from)[3], size_t n, const double u[3], const double v[3],
                           const double normal[3], double (*to)[3])
 {
@@ -192,10 +188,12 @@ static double area_over(struct brc_erosion *e, size_t facet, size_t n, size_t ro
     return brc_norm(sum);
 }
 
+/* A plane with one facet has the whole face of the core. Where several share it, each gets what
+ * lies over it: the eroded areas of bonds then sum to the face, with no gap and nothing twice. */
 int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, double *area)
 {
     const struct brc_convex *core = &e->core;
-    size_t leader = (size_t)e->leader[k], facet = facet_of(e, k);
+    size_t leader = (size_t)e->facet[k].leader, facet = facet_of(e, k);
     size_t i = brc_convex_face(core, (int32_t)facet_of(e, leader));
     double unused[3];
     *area = 0;
@@ -204,7 +202,7 @@ int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, d
     const int32_t *loop = core->loop + core->first[i];
     size_t n = core->first[i + 1] - core->first[i];
     *area = brc_polygon_area(core->vertex, loop, n, core->plane[i].n, unused);
-    if (e->share[leader] == 1)
+    if (e->facet[leader].share == 1)
         return 0;
     /* a cut by an edge of the facet adds one vertex at most */
     size_t room = n + e->facets->first[facet + 1] - e->facets->first[facet];
@@ -215,6 +213,8 @@ int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, d
     return 0;
 }
 
+/* Bisection, for a message alone: the exact radius would need a linear program, and 40 halvings
+ * give it to more digits than are printed. */
 double brc_erosion_inscribed(struct brc_erosion *e, double high)
 {
     double low = 0;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cores of cells: the part of a cell that is farther than a radius from all its facets. Facets of a
- * cell in one plane (lamellae, tessellations of two scales) are one face of the core. Used by the
- * polyhedra model and by the first guess of its stiffnesses. */
+/* Cores of cells: the part of a cell that is farther than a radius from all its facets; rounded by
+ * spheres of that radius, it is the spheropolyhedron of gt12. Facets of a cell in one plane
+ * (lamellae, tessellations of two scales) are one face of the core. Used by the polyhedra model and
+ * by the first guess of its stiffnesses; knows no contact. */
 #ifndef BRC_EROSION_H
 #define BRC_EROSION_H
 
@@ -10,15 +11,17 @@
 /* Work space, kept from cell to cell; zero before the first use. */
 struct brc_erosion {
     const struct brc_facets *facets;
-    size_t index, n;         /* the cell, and the number of its facets */
-    struct brc_convex cell;  /* the whole cell */
-    struct brc_convex core;  /* what is left of it; no faces when nothing is */
-    struct brc_plane *plane; /* [n] of the cell, outward */
-    struct brc_plane *moved; /* [n] work: one plane a face of the core */
-    int32_t *leader;         /* [n] the first and largest of the facets in this one's plane */
-    int32_t *share;          /* [n] number of facets in the plane that this one leads */
-    double (*polygon)[3];    /* work */
-    size_t cap, cap_polygon;
+    size_t index, n;        /* the cell, and the number of its facets */
+    struct brc_convex cell; /* the whole cell */
+    struct brc_convex core; /* what is left of it; no faces when nothing is */
+    struct brc_plane
+        *plane; /* [n] of the cell, outward; behind them work: one a face of the core */
+    struct {
+        int32_t leader;   /* the first and largest of the facets in this one's plane */
+        int32_t share;    /* number of facets in the plane that this one leads */
+    } * facet;            /* [n] */
+    double (*polygon)[3]; /* work */
+    size_t cap_plane, cap_facet, cap_polygon;
 };
 
 void brc_erosion_free(struct brc_erosion *e);

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tessellation result: closed cells and the polygons between them. Immutable once made; both
- * models read the same facets. A facet is stored once and seen from both cells. */
+ * models read the same facets. A facet is stored once and seen from both cells, so that they agree
+ * about its area and vertices to the last bit, and a bond is a facet's number: contacts of a
+ * specimen follow from this list, never from a search for what is near. Made by tess.h, tess_disc.c
+ * and neper.h; knows no model and no material. */
 #ifndef BRC_FACETS_H
 #define BRC_FACETS_H
 
@@ -38,22 +41,17 @@ struct brc_facets {
 void brc_facets_free(struct brc_facets *f);
 /* Room for the seeds of n cells; radii are 0. */
 int brc_facets_seeds(struct brc_context *ctx, struct brc_facets *f, size_t n);
-/* Largest |volume sum / domain volume - 1|, |sum A n| / sum A over a cell: the closure check. */
-struct brc_facets_quality {
-    double volume_error;  /* relative */
-    double closure_error; /* largest over the cells, relative to the cell's area */
-    double smallest_volume, smallest_area;
-};
-void brc_facets_check(const struct brc_facets *f, double domain_volume,
-                      struct brc_facets_quality *quality);
-/* The check that nothing leaves unseen: every cell is a closed convex body (each edge once in each
- * direction, Euler's formula, volume above zero, closure), and the volumes sum to the domain. An
- * error names the cell, and its place with `origin` added. */
+/* The check that nothing leaves unseen, whatever it was made by, and in every build: every cell is
+ * a closed convex body (each edge once in each direction, Euler's formula, volume above zero,
+ * closure), and the volumes sum to the domain. An error names the cell, and its place with `origin`
+ * added. */
 int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
                       const double origin[3]);
-/* Moves all places. */
+/* Moves all places [m]; areas and volumes stay as they were measured near the origin. */
 void brc_facets_shift(struct brc_facets *f, const double by[3]);
-/* Sets is_contact and area_dropped for a limit of min_area_ratio times the mean inner area. */
+/* Sets is_contact and area_dropped for a limit of min_area_ratio times the mean inner area. Tiny
+ * facets are kept and only marked: a cell without them would be open, while a contact over one
+ * would have next to no stiffness and a normal that is rounding. */
 void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio);
 /* m, twice the area over the perimeter: what a facet is wide where it is narrow. */
 double brc_facets_width(const struct brc_facets *f, size_t facet);
@@ -63,7 +61,8 @@ void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_
 int brc_facets_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
                     struct brc_convex *c);
 
-/* Hash of seeds, cells, facets and vertices: equal specimens have equal ones. */
+/* Hash of seeds, cells, facets and vertices: equal specimens have equal ones. A run that resumes
+ * compares it with that of its state, since the specimen is made anew and not saved. */
 uint64_t brc_facets_hash(const struct brc_facets *f);
 
 #endif

@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Welding of a complex: near vertices become one, facets without width go, their vertices stay in
- * order on both sides, and vertices in the middle of an edge go. */
+/* Near vertices become one, facets without width go, their vertices stay in order on both sides,
+ * and vertices in the middle of an edge go.
+ *
+ * Why at all: seeds that are nearly regular (a grid without jitter, a cut that just misses a
+ * vertex) have edges and facets of the size of rounding. Their normals are noise, contacts over
+ * them are stiff springs between wrong points, and vertices on both of their sides are one vertex
+ * to any model. Dropping such a facet alone would leave its cells open, so its long sides are
+ * closed like a zip: all cells around it see the same edges afterwards. Called before the cuts,
+ * whose decisions it makes safe, and after them, since cuts make new near vertices. */
 #include "common/specimen/cell_complex.h"
 
 #include "common/base/grow.h"
@@ -11,9 +18,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Each pass closes one narrow facet at least, and far more where they do not touch. */
 enum { MAX_PASSES = 1000 };
 
-/* An edge low-high that gets further vertices, in order from low to high. */
+/* An edge low-high that gets further vertices, in order from low to high. Kept by the edge and not
+ * by the facet, since all facets around it must get the same ones. */
 struct split {
     int32_t low, high;
     int32_t n, first; /* range in splits.vertex */
@@ -67,7 +76,9 @@ static int join_vertices(struct brc_context *ctx, struct merger *w)
     return code;
 }
 
-/* Removes repeated neighbours (x x) and spikes (x y x) from a closed loop; returns its length. */
+/* Removes repeated neighbours (x x) and spikes (x y x) from a closed loop, also across its end;
+ * returns its length. Both come of vertices that have become one: an edge of no length, and an edge
+ * there and back. */
 static int32_t tidy_loop(int32_t *loop, int32_t n)
 {
     int32_t m = 0, from = 0;
@@ -103,7 +114,9 @@ static int32_t find_repeat(const int32_t *loop, int32_t n, int32_t *again)
     return -1;
 }
 
-/* Gives facet f the loop in w->loop, tidied; a loop that touches itself becomes two facets. */
+/* Gives facet f the loop in w->loop, tidied; a loop that touches itself becomes two facets, as two
+ * polygons that share a vertex are what each cell has there. A shorter loop takes the old one's
+ * place, a longer one goes to the end of the pool. */
 static int set_loop(struct brc_context *ctx, struct merger *w, size_t f, int32_t n)
 {
     struct brc_cell_complex *c = w->c;
@@ -145,58 +158,50 @@ static int rename_vertices(struct brc_context *ctx, struct merger *w)
     return 0;
 }
 
-static double distance(const struct merger *w, int32_t u, int32_t v)
-{
-    double r[3];
-    brc_sub(r, w->c->vertex[u], w->c->vertex[v]);
-    return brc_norm(r);
-}
-
-/* Position in the loop of the vertex farthest from vertex v. */
+/* Position in the loop of the vertex farthest from vertex v. From any vertex it is one end of a
+ * narrow facet, and from there the other end. */
 static int32_t farthest(const struct merger *w, const int32_t *loop, int32_t n, int32_t v)
 {
+    double(*x)[3] = w->c->vertex;
     int32_t best = 0;
     for (int32_t i = 1; i < n; i++)
-        if (distance(w, loop[i], v) > distance(w, loop[best], v))
+        if (brc_distance(x[loop[i]], x[v]) > brc_distance(x[loop[best]], x[v]))
             best = i;
     return best;
 }
 
 /* Tells whether a facet is narrower than the tolerance. Then w->loop is its loop from one end,
- * *tip the position of the other end, and w->t the positions along the line between them. */
-static int is_narrow(struct brc_context *ctx, struct merger *w, size_t f, int32_t *tip,
-                     bool *narrow)
+ * *tip the position of the other end, and w->t the positions along the line between them. The area
+ * is asked first, as it tells for nearly all facets that they are wide. */
+static bool is_narrow(struct merger *w, const struct brc_cell_complex_facet *facet, int32_t *tip)
 {
-    const struct brc_cell_complex *c = w->c;
-    const int32_t *loop = c->loop + c->facet[f].first;
-    int32_t n = c->facet[f].n;
+    double(*x)[3] = w->c->vertex;
+    const int32_t *loop = w->c->loop + facet->first;
+    int32_t n = facet->n;
     double centroid[3], line[3];
-    double area = brc_polygon_area(c->vertex, loop, (size_t)n, c->facet[f].normal, centroid);
+    double area = brc_polygon_area(x, loop, (size_t)n, facet->normal, centroid);
     int32_t begin = farthest(w, loop, n, loop[0]);
-    *narrow = false;
-    if (fabs(area) > 4 * w->tolerance * distance(w, loop[begin], loop[0]))
-        return 0;
-    BRC_GROW(ctx, w->loop, w->cap_loop, (size_t)n);
-    BRC_GROW(ctx, w->t, w->cap_t, (size_t)n);
+    if (fabs(area) > 4 * w->tolerance * brc_distance(x[loop[begin]], x[loop[0]]))
+        return false;
     for (int32_t i = 0; i < n; i++)
         w->loop[i] = loop[(begin + i) % n];
     *tip = farthest(w, w->loop, n, w->loop[0]);
-    brc_sub(line, c->vertex[w->loop[*tip]], c->vertex[w->loop[0]]);
+    brc_sub(line, x[w->loop[*tip]], x[w->loop[0]]);
     brc_normalise(line, line);
     for (int32_t i = 0; i < n; i++) {
         double r[3];
-        brc_sub(r, c->vertex[w->loop[i]], c->vertex[w->loop[0]]);
+        brc_sub(r, x[w->loop[i]], x[w->loop[0]]);
         w->t[i] = brc_dot(r, line);
         brc_axpy(r, -w->t[i], line);
         if (brc_norm(r) > w->tolerance)
-            return 0;
+            return false;
     }
-    *narrow = true;
-    return 0;
+    return true;
 }
 
 /* Adds to the edge at position i of w->loop (from low t to high t when rising) the vertices of the
- * other side, positions begin..end, that lie between its ends. */
+ * other side, positions begin..end, that lie between its ends. Places along the facet decide, not
+ * distances across it, which are below the tolerance and mean nothing. */
 static int split_edge(struct brc_context *ctx, struct merger *w, int32_t i, int32_t n,
                       const int32_t range[2])
 {
@@ -220,7 +225,8 @@ static int split_edge(struct brc_context *ctx, struct merger *w, int32_t i, int3
     return 0;
 }
 
-/* Marks the vertices of a loop as used in this pass; false when one was used before. */
+/* Marks the vertices of a loop as used in this pass; false when one was used before. Splits of one
+ * pass then never touch the same edge, and their order does not matter. */
 static bool claim_loop(struct merger *w, int32_t n, int32_t pass)
 {
     for (int32_t i = 0; i < n; i++)
@@ -232,18 +238,17 @@ static bool claim_loop(struct merger *w, int32_t n, int32_t pass)
 }
 
 /* Removes narrow facets: both long sides get the vertices of each other, and so become one. Facets
- * that share a vertex with one removed in this pass wait for the next. */
+ * that share a vertex with one removed in this pass wait for the next: their loops change, and
+ * whether they are still narrow is asked anew. */
 static int close_narrow(struct brc_context *ctx, struct merger *w, int32_t pass, size_t *n_narrow)
 {
     struct brc_cell_complex *c = w->c;
     *n_narrow = w->splits.n = w->splits.n_vertex = 0;
     for (size_t f = 0; f < c->n_facets; f++) {
         int32_t tip, n = c->facet[f].n;
-        bool narrow;
-        if (n == 0)
-            continue;
-        BRC_TRY(is_narrow(ctx, w, f, &tip, &narrow));
-        if (!narrow)
+        BRC_GROW(ctx, w->loop, w->cap_loop, (size_t)n);
+        BRC_GROW(ctx, w->t, w->cap_t, (size_t)n);
+        if (n == 0 || !is_narrow(w, &c->facet[f], &tip))
             continue;
         ++*n_narrow;
         if (!claim_loop(w, n, pass))
@@ -321,44 +326,6 @@ static int drop_middle_vertices(struct brc_context *ctx, struct merger *w)
     return 0;
 }
 
-/* Drops removed facets, unused vertices and gaps between loops; order stays. */
-static int compact(struct brc_context *ctx, struct brc_cell_complex *c, int32_t *number)
-{
-    size_t n_facets = 0, n_loop = 0;
-    int32_t n = 0;
-    memset(number, 0xff, c->n_vertices * sizeof *number);
-    for (size_t f = 0; f < c->n_facets; f++)
-        for (int32_t i = 0; i < c->facet[f].n; i++) {
-            number[c->loop[c->facet[f].first + (size_t)i]] = 0;
-            n_loop++;
-        }
-    for (size_t v = 0; v < c->n_vertices; v++)
-        if (number[v] == 0) {
-            brc_copy(c->vertex[n], c->vertex[v]);
-            number[v] = n++;
-        }
-    c->n_vertices = (size_t)n;
-    int32_t *loop = brc_alloc(ctx, n_loop, sizeof *loop);
-    if (!loop)
-        return BRC_ERR_MEMORY;
-    n_loop = 0;
-    for (size_t f = 0; f < c->n_facets; f++) {
-        struct brc_cell_complex_facet facet = c->facet[f];
-        if (facet.n == 0)
-            continue;
-        for (int32_t i = 0; i < facet.n; i++)
-            loop[n_loop + (size_t)i] = number[c->loop[facet.first + (size_t)i]];
-        facet.first = n_loop;
-        n_loop += (size_t)facet.n;
-        c->facet[n_facets++] = facet;
-    }
-    free(c->loop);
-    c->loop = loop;
-    c->n_loop = c->cap_loop = n_loop;
-    c->n_facets = n_facets;
-    return 0;
-}
-
 static int merge_all(struct brc_context *ctx, struct merger *w)
 {
     BRC_TRY(join_vertices(ctx, w));
@@ -372,8 +339,7 @@ static int merge_all(struct brc_context *ctx, struct merger *w)
         BRC_TRY(close_narrow(ctx, w, pass, &n_narrow));
         BRC_TRY(apply_splits(ctx, w));
     }
-    BRC_TRY(drop_middle_vertices(ctx, w));
-    return compact(ctx, w->c, w->to);
+    return drop_middle_vertices(ctx, w);
 }
 
 int brc_cell_complex_merge_vertices(struct brc_context *ctx, struct brc_cell_complex *c,

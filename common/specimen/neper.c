@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes a tessellation in Neper's format with 17 digits, so that it reads back to the same bits;
- * reading is in neper_read.c and neper_parse.c. */
+ * reading is in neper_read.c and neper_parse.c. Called by `breccia export`; knows the specimen and
+ * its domain, no model. Neper numbers from 1 and gives edges a direction, which breccia does not
+ * store: edges are found anew from the loops. */
 #include "common/specimen/neper.h"
 
 #include "common/geometry/edges.h"
@@ -12,7 +14,7 @@ struct writer {
     FILE *out;
     const struct brc_specimen *s;
     struct brc_edges edges, domain_edges;
-    int32_t (*pair)[2]; /* [edges.n] faces of the domain that meet in an edge, -1: inside */
+    int32_t *domain_edge; /* [edges.n] edge of the domain on which an edge lies, -1: none */
 };
 
 /* ---- cells --------------------------------------------------------------------------------- */
@@ -85,28 +87,49 @@ static void put_faces(const struct writer *w)
 
 /* ---- domain -------------------------------------------------------------------------------- */
 
-/* The two faces of the domain that meet in each edge of the cells. */
-static void find_pairs(struct writer *w)
+/* The edge of the domain between two of its faces, -1: they have none in common. */
+static int32_t edge_between(const struct brc_edges *e, int32_t a, int32_t b)
+{
+    for (size_t i = 0; i < e->n; i++) {
+        const struct brc_side *side = &e->side[e->first[i]];
+        if ((side[0].face == a && side[1].face == b) || (side[0].face == b && side[1].face == a))
+            return (int32_t)i;
+    }
+    return -1;
+}
+
+/* An edge with facets on two faces of the domain lies on the edge between these. */
+static void find_domain_edges(struct writer *w)
 {
     const struct brc_facets *f = &w->s->facets;
     for (size_t i = 0; i < w->edges.n; i++) {
         int32_t face[2] = {-1, -1};
-        int n = 0;
         for (size_t k = w->edges.first[i]; k < w->edges.first[i + 1]; k++) {
             int32_t facet = w->edges.side[k].face;
-            if (f->cell[facet][1] >= 0)
+            if (f->cell[facet][1] >= 0 || face[1] >= 0)
                 continue;
             int32_t own = (int32_t)brc_convex_face(&w->s->domain, f->face[facet]);
-            if (n < 2 && (n == 0 || face[0] != own))
-                face[n++] = own;
+            if (own != face[0])
+                face[face[0] >= 0] = own;
         }
-        bool is_swapped = face[0] > face[1] && n == 2;
-        w->pair[i][0] = n < 2 ? -1 : face[is_swapped];
-        w->pair[i][1] = n < 2 ? -1 : face[!is_swapped];
+        w->domain_edge[i] = face[1] < 0 ? -1 : edge_between(&w->domain_edges, face[0], face[1]);
     }
 }
 
-/* "x0" for boxes, else "f1". */
+/* "3 1 5 8": which of n things lie on the part of the domain with this number. */
+static void put_members(FILE *out, const int32_t *part_of, size_t n, int32_t part)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += part_of[i] == part;
+    fprintf(out, "     %zu", count);
+    for (size_t i = 0; i < n; i++)
+        if (part_of[i] == part)
+            fprintf(out, " %zu", i + 1);
+    fputc('\n', out);
+}
+
+/* "x0" for boxes, else "f1", as Neper names the faces of its own domains. */
 static void face_label(const struct brc_specimen *s, size_t face, char label[LABEL_SIZE])
 {
     int id = s->domain.plane[face].id;
@@ -131,6 +154,8 @@ static void put_vertex_label(const struct writer *w, int32_t v)
     fputc('\n', w->out);
 }
 
+/* Each with the vertex of the cells that lies there. The nearest one is it, by a search through
+ * all: a domain has few vertices, and files are written seldom. */
 static void put_domain_vertices(const struct writer *w)
 {
     const struct brc_convex *d = &w->s->domain;
@@ -138,14 +163,10 @@ static void put_domain_vertices(const struct writer *w)
     fprintf(w->out, "  *vertex\n   %zu\n", d->n_vertices);
     for (size_t v = 0; v < d->n_vertices; v++) {
         size_t nearest = 0;
-        double least = HUGE_VAL, r[3];
-        for (size_t i = 0; i < f->n_vertices; i++) {
-            brc_sub(r, f->vertex[i], d->vertex[v]);
-            if (brc_norm2(r) < least) {
-                least = brc_norm2(r);
+        for (size_t i = 1; i < f->n_vertices; i++)
+            if (brc_distance(f->vertex[i], d->vertex[v]) <
+                brc_distance(f->vertex[nearest], d->vertex[v]))
                 nearest = i;
-            }
-        }
         fprintf(w->out, "   %zu", v + 1);
         put_point(w->out, d->vertex[v]);
         put_vertex_label(w, (int32_t)v);
@@ -159,17 +180,10 @@ static void put_domain_edges(const struct writer *w)
     for (size_t i = 0; i < w->domain_edges.n; i++) {
         const struct brc_side *e = &w->domain_edges.side[w->domain_edges.first[i]];
         char a[LABEL_SIZE], b[LABEL_SIZE];
-        size_t n = 0;
         face_label(w->s, (size_t)e[0].face, a);
         face_label(w->s, (size_t)e[1].face, b);
         fprintf(w->out, "   %zu 2 %d %d\n     %s%s\n", i + 1, e->low + 1, e->high + 1, a, b);
-        for (size_t k = 0; k < w->edges.n; k++)
-            n += w->pair[k][0] == e[0].face && w->pair[k][1] == e[1].face;
-        fprintf(w->out, "     %zu", n);
-        for (size_t k = 0; k < w->edges.n; k++)
-            if (w->pair[k][0] == e[0].face && w->pair[k][1] == e[1].face)
-                fprintf(w->out, " %zu", k + 1);
-        fputc('\n', w->out);
+        put_members(w->out, w->domain_edge, w->edges.n, (int32_t)i);
     }
 }
 
@@ -180,20 +194,14 @@ static void put_domain_faces(const struct writer *w)
     fprintf(w->out, "  *face\n   %zu\n", d->n_faces);
     for (size_t i = 0; i < d->n_faces; i++) {
         char label[LABEL_SIZE];
-        size_t n = 0;
         face_label(w->s, i, label);
         fprintf(w->out, "   %zu", i + 1);
         put_loop(w->out, &w->domain_edges, d->loop + d->first[i], d->first[i + 1] - d->first[i],
                  false);
         fprintf(w->out, "     plane\n     4 %.17g", d->plane[i].d);
         put_point(w->out, d->plane[i].n);
-        for (size_t k = 0; k < f->n_facets; k++)
-            n += f->cell[k][1] < 0 && f->face[k] == d->plane[i].id;
-        fprintf(w->out, "\n     %s\n     %zu", label, n);
-        for (size_t k = 0; k < f->n_facets; k++)
-            if (f->cell[k][1] < 0 && f->face[k] == d->plane[i].id)
-                fprintf(w->out, " %zu", k + 1);
-        fputc('\n', w->out);
+        fprintf(w->out, "\n     %s\n", label);
+        put_members(w->out, f->face, f->n_facets, d->plane[i].id);
     }
 }
 
@@ -216,10 +224,10 @@ static int write_all(struct brc_context *ctx, struct writer *w, struct brc_pool 
     const struct brc_convex *d = &w->s->domain;
     BRC_TRY(brc_edges_find(ctx, &w->edges, f->n_facets, f->first, f->loop));
     BRC_TRY(brc_edges_find(ctx, &w->domain_edges, d->n_faces, d->first, d->loop));
-    w->pair = brc_pool_alloc(ctx, pool, w->edges.n, sizeof *w->pair);
-    if (!w->pair)
+    w->domain_edge = brc_pool_alloc(ctx, pool, w->edges.n, sizeof *w->domain_edge);
+    if (!w->domain_edge)
         return BRC_ERR_MEMORY;
-    find_pairs(w);
+    find_domain_edges(w);
     put_all(w);
     return 0;
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tessellation files of Neper (.tess), format 3.4, in metres. */
+/* Tessellation files of Neper (.tess): written in format 3.4, in metres; read in 2.0 and 3.x. So
+ * microstructures that Neper makes become specimens, and those of breccia can be meshed or measured
+ * by Neper's tools. */
 #ifndef BRC_NEPER_H
 #define BRC_NEPER_H
 

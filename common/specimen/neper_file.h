@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a tessellation file of Neper holds, as it stands there: between the parser and the reader.
- */
+/* What a tessellation file of Neper holds, as it stands there: between the parser, which knows
+ * words and no geometry, and the reader, which knows geometry and no words. Lengths are those of
+ * the file. */
 #ifndef BRC_NEPER_FILE_H
 #define BRC_NEPER_FILE_H
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The words and numbers of Neper's tessellation files. Edges, signs and equations are passed over:
- * they follow from the loops of the faces. */
+ * they follow from the loops of the faces. Nothing of the file is trusted: each number has a range
+ * by what was read before, so that neither memory nor an index can be asked for by a damaged one.
+ * Sections are looked for by their headings, from the start of the file, so that those of newer
+ * versions that are not known here do no harm. Called by neper_read.c alone. */
 #include "common/specimen/neper_file.h"
 
 #include <math.h>
@@ -8,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* More than any domain of flat faces has; each of them is compared with each other one. */
 enum { MAX_DOMAIN_FACES = 100000 };
 
 static int fail(const struct brc_neper_file *t, const char *what)
@@ -17,6 +21,8 @@ static int fail(const struct brc_neper_file *t, const char *what)
 
 /* ---- words and numbers --------------------------------------------------------------------- */
 
+/* The next word, cut where it is longer than any that means something; lines are counted for
+ * messages. */
 static bool next(struct brc_neper_file *t)
 {
     static const char blanks[] = " \t\r\n";
@@ -37,6 +43,7 @@ static int skip(struct brc_neper_file *t, size_t n)
     return 0;
 }
 
+/* The end of the text is no special case: the word is empty then, and not a number. */
 static int whole(struct brc_neper_file *t, long low, long high, long *value)
 {
     char *end = t->token;
@@ -56,6 +63,14 @@ static int count(struct brc_neper_file *t, size_t *n)
     return 0;
 }
 
+/* A count and as many words that are passed over. */
+static int skip_list(struct brc_neper_file *t)
+{
+    size_t n;
+    BRC_TRY(count(t, &n));
+    return skip(t, n);
+}
+
 static int real(struct brc_neper_file *t, double *value)
 {
     char *end = t->token;
@@ -66,7 +81,9 @@ static int real(struct brc_neper_file *t, double *value)
     return 0;
 }
 
-/* Significant digits of the number that was read last, trailing zeros included; 0 for zero. */
+/* Significant digits of the number that was read last, trailing zeros included; 0 for zero. The
+ * file does not say with how many digits it was written, and what counts as flat or closed hangs on
+ * it. */
 static int significant_digits(const char *token)
 {
     int n = 0;
@@ -99,7 +116,8 @@ static int find(struct brc_neper_file *t, const char *heading, bool is_from_star
 
 /* ---- parts of the file --------------------------------------------------------------------- */
 
-/* The kinds of file that are read: three-dimensional, not periodic, formats 2.0 and 3. */
+/* The kinds of file that are read: three-dimensional, not periodic, formats 2.0 and 3. Others are
+ * refused with the option of Neper that makes a file of the right kind. */
 static int read_kind(struct brc_neper_file *t)
 {
     long dimension;
@@ -166,7 +184,7 @@ static int read_vertices(struct brc_neper_file *t)
 
 static int read_face(struct brc_neper_file *t, size_t i)
 {
-    size_t n, n_edges;
+    size_t n;
     BRC_TRY(number(t, i));
     BRC_TRY(count(t, &n));
     if (n < 3 || t->n_loop + n > t->size / 2)
@@ -177,8 +195,8 @@ static int read_face(struct brc_neper_file *t, size_t i)
         BRC_TRY(whole(t, 1, (long)t->n_vertices, &v));
         t->loop[t->n_loop++] = (int32_t)v - 1;
     }
-    BRC_TRY(count(t, &n_edges));
-    return skip(t, n_edges + 4 + 5); /* edges, equation, state and point */
+    BRC_TRY(skip_list(t)); /* edges */
+    return skip(t, 4 + 5); /* equation, state and point */
 }
 
 static int read_faces(struct brc_neper_file *t)
@@ -217,7 +235,8 @@ static int read_polyhedra(struct brc_neper_file *t)
     return 0;
 }
 
-/* Leaves cells without faces out: such a cell has been hidden by others. */
+/* Leaves cells without faces out: such a cell has been hidden by others. It is told and not
+ * refused, as the other cells fill the domain. */
 static int drop_empty_cells(struct brc_neper_file *t)
 {
     size_t n = 0, n_empty = 0, first = 0;
@@ -250,13 +269,11 @@ static int drop_empty_cells(struct brc_neper_file *t)
  */
 static int read_domain_type(struct brc_neper_file *t, size_t i)
 {
-    size_t n;
     if (t->is_format_2)
         return skip(t, 4);
     BRC_TRY(skip(t, 1));
     t->is_curved[i] = strcmp(t->token, "plane") != 0;
-    BRC_TRY(count(t, &n));
-    return skip(t, n);
+    return skip_list(t);
 }
 
 /* Which faces lie on which face of the domain. */
@@ -273,10 +290,8 @@ static int read_domain(struct brc_neper_file *t)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; i < t->n_domain; i++) {
         BRC_TRY(number(t, i));
-        for (int k = 0; k < 2; k++) { /* its vertices and edges */
-            BRC_TRY(count(t, &n));
-            BRC_TRY(skip(t, n));
-        }
+        BRC_TRY(skip_list(t)); /* its vertices */
+        BRC_TRY(skip_list(t)); /* its edges */
         BRC_TRY(read_domain_type(t, i));
         BRC_TRY(skip(t, 1)); /* label */
         BRC_TRY(count(t, &n));

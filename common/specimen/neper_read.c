@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From what a tessellation file holds to cells and their domain. */
+/* From what a tessellation file holds to cells and their domain. Neper's own planes, centres and
+ * volumes are not taken over: they have the digits of the file each for itself, and cells must
+ * agree about a facet. So everything follows from the vertices, through the same complex as a
+ * tessellation of breccia's. Called by specimen.c. */
 #include "common/specimen/cell_complex.h"
 #include "common/geometry/hilbert.h"
 #include "common/base/input_file.h"
@@ -10,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* of the specimen's extent */
+/* Parts of the specimen's extent. A face is flat where its vertices are within this distance of its
+ * plane, far above rounding and far below what regularization bends. */
 static const double flat_tolerance = 1e-6;
 static const double merge_length = 1e-10;
 /* planes of the domain that differ by less are one: as files of planes, or by the file's digits */
@@ -71,7 +75,9 @@ static void measure_face(const struct tess *t, const struct brc_neper_face *f, d
     }
 }
 
-/* Means of the faces' middles, which lie inside of convex cells, and the cells' order in space. */
+/* Means of the faces' middles, which lie inside of convex cells, and the cells' order in space.
+ * They tell inside from outside; true centroids are measured when the cells are known to be closed.
+ */
 static int place_cells(struct tess *t)
 {
     size_t n_cells = t->file.n_cells;
@@ -93,7 +99,9 @@ static int place_cells(struct tess *t)
     return brc_hilbert_order(t->file.ctx, t->centre, n_cells, t->order);
 }
 
-/* A face of the domain that lies in the plane of another one is that one. */
+/* A face of the domain that lies in the plane of another one is that one: Neper's may have several
+ * to a plane, and the convex body has dropped all but one. Which one is found by the direction, as
+ * no two planes of a convex body have the same. */
 static int join_domain_faces(struct tess *t, const struct brc_plane *plane,
                              const struct brc_convex *domain)
 {
@@ -116,7 +124,8 @@ static int join_domain_faces(struct tess *t, const struct brc_plane *plane,
     return 0;
 }
 
-/* The planes of the domain by the outward areas of the faces that lie on them. */
+/* The planes of the domain by the outward areas of the faces that lie on them. Not by the equations
+ * of the file, which are passed over everywhere: the planes must be those of the vertices. */
 static int make_domain(struct tess *t, struct brc_convex *domain)
 {
     struct brc_plane *plane =
@@ -197,7 +206,8 @@ static int check_flat(const struct tess *t, size_t i, const double n[3], const d
     return depth <= flat_tolerance * t->extent ? 0 : fail_flat(t, i, depth);
 }
 
-/* A face as a facet: out of its lower cell, the loop turned to fit. */
+/* A face as a facet: out of its lower cell, the loop turned to fit. The file's signs are not needed
+ * for that, since the cell's middle tells which side is out. */
 static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const int32_t *number_of,
                      const struct brc_convex *domain)
 {

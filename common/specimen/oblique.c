@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A uniform strain along each of some directions is compared with what the same medium without
- * obliqueness would store: that needs no model and no run, and is known before either. */
+ * obliqueness would store: that needs no model and no run, and is known before either. Called by
+ * the models; knows facets and places of centres only. */
 #include "common/specimen/oblique.h"
 
 #include "common/geometry/vec.h"
@@ -10,7 +11,8 @@ static const double LEAST_AREA = 1e-4;
 /* Directions that hold less than this part of the volume say nothing: a single layer of grains. */
 static const double LEAST_VOLUME = 0.01;
 
-/* Axes, face diagonals and body diagonals of a cube. */
+/* Axes, face diagonals and body diagonals of a cube. Not normalised: what a direction stores is
+ * compared with what it should store. */
 static const double DIRECTION[][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
                                       {1, 0, 1},  {1, 0, -1}, {0, 1, 1}, {0, 1, -1}, {1, 1, 1},
                                       {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
@@ -22,6 +24,8 @@ static void branch_of(double branch[3], const struct brc_facets *f, double (*cen
     brc_sub(branch, centre[f->cell[facet][1]], centre[f->cell[facet][0]]);
 }
 
+/* The normal points out of the first cell, so that the cosine is positive where the second centre
+ * lies beyond the facet. */
 double brc_oblique_cos(const struct brc_facets *f, double (*centre)[3], size_t facet)
 {
     double branch[3];

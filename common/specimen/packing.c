@@ -2,7 +2,10 @@
 /* vgcm's growth packing: spheres of uniformly distributed diameters are inserted at half of their
  * radius, grown to the full one, and relaxed without cohesion until they rest. At the paper's solid
  * fraction they overlap a little everywhere, which is what makes every Laguerre cell a compact one.
- */
+ *
+ * A small run of its own rather than a model in the engine: spheres neither turn nor rub, nothing
+ * is saved or compared, and no parameter has a meaning beyond the packing. Called by specimen.c;
+ * its result is places and radii (vgcm 2.5). */
 #include "common/specimen/seeds.h"
 
 #include "common/geometry/grid.h"
@@ -25,7 +28,8 @@ static const double REST = 1e-2, LAST_REST = 1e-5;
 static const double SKIN = 0.3; /* of the mean radius */
 /* Spheres whose volumes sum to more than that of the domain press each other out of it. */
 static const double MAX_FRACTION = 1;
-/* Overlap, in mean radii, that counts as none: a loose packing rests when only such are left. */
+/* Overlap, in mean radii, that counts as none: a loose packing rests when only such are left. Its
+ * mean contact force goes to zero, and a ratio to that alone would never fall. */
 static const double LOOSE = 1e-3;
 
 struct packing {
@@ -48,6 +52,8 @@ static double mean_cube(double low, double high)
     return (low * low + high * high) * (low + high) / 4;
 }
 
+/* By the mean volume of a sphere, before one is made: what cannot be packed is refused at once and
+ * not after minutes of relaxing. */
 static int choose_count(struct brc_context *ctx, const struct brc_specimen_params *s,
                         double domain_volume, size_t *n)
 {
@@ -122,6 +128,8 @@ static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
     return 0;
 }
 
+/* Pairs of a sphere and a plane, with the same skin as those of spheres. A domain has few planes,
+ * or many that are far from most spheres: no grid is needed. */
 static int list_walls(struct brc_context *ctx, struct packing *p)
 {
     p->near_wall.n = 0;
@@ -132,14 +140,13 @@ static int list_walls(struct brc_context *ctx, struct packing *p)
     return 0;
 }
 
+/* Lists are made for the full radii, so that growth does not outdate them, and hold until a sphere
+ * has moved by half of the skin. */
 static int list_neighbours(struct brc_context *ctx, struct packing *p)
 {
     bool stale = p->near.pair == NULL;
-    for (size_t i = 0; i < p->n && !stale; i++) {
-        double d[3];
-        brc_sub(d, p->x[i], p->listed[i]);
-        stale = brc_norm2(d) > 0.25 * p->skin * p->skin;
-    }
+    for (size_t i = 0; i < p->n && !stale; i++)
+        stale = brc_distance(p->x[i], p->listed[i]) > 0.5 * p->skin;
     if (!stale)
         return 0;
     for (size_t i = 0; i < p->n; i++)
@@ -178,7 +185,9 @@ static void repel(struct packing *p)
     p->contact = touching > 0 ? sum / (double)touching : 0;
 }
 
-/* One damped step; ratio is the mean unbalanced force over the mean contact force. */
+/* One damped step; ratio is the mean unbalanced force over the mean contact force. Symplectic
+ * Euler: the place moves with the new velocity, which keeps the step stable up to the limit above.
+ */
 static int relax(struct brc_context *ctx, struct packing *p, double *ratio)
 {
     double unbalanced = 0;
@@ -195,7 +204,8 @@ static int relax(struct brc_context *ctx, struct packing *p, double *ratio)
 }
 
 /* The first sphere whose centre is not in its own Laguerre cell (another's power there is lower), n
- * when there is none. Such a centre lies inside the other sphere, so near pairs are all to test. */
+ * when there is none. Such a centre lies inside the other sphere, so near pairs are all to test.
+ * Asked here, since relaxing on can still part the two, while specimen.c can only refuse them. */
 static size_t find_swallowed(const struct packing *p)
 {
     for (size_t k = 0; k < p->near.n; k++) {
@@ -208,6 +218,7 @@ static size_t find_swallowed(const struct packing *p)
     return p->n;
 }
 
+/* In the order in which a user can do something about it: rest, then sizes, then the fraction. */
 static int check_packing(struct brc_context *ctx, const struct packing *p, double ratio)
 {
     size_t swallowed = find_swallowed(p);
@@ -232,7 +243,8 @@ static int check_packing(struct brc_context *ctx, const struct packing *p, doubl
     return 0;
 }
 
-/* How far the relaxation is, by the logarithm of the ratio that it is to bring down. */
+/* How far the relaxation is, by the logarithm of the ratio that it is to bring down: a damped pack
+ * loses about a constant part of it in each step. */
 static double part_at_rest(double ratio, double rest)
 {
     return fmin(fmax(log(ratio) / log(rest), 0), 1);

@@ -23,6 +23,8 @@ struct header {
     uint64_t version, key, n, hash;
 };
 
+/* Numbers as bits and not as text: equal keys mean equal packings, to the last bit. Planes without
+ * their labels, which the packing does not see. */
 static uint64_t cache_key(const struct brc_specimen_params *p, const struct brc_convex *domain)
 {
     double number[] = {p->diameter_min,  p->diameter_max, p->solid_fraction,
@@ -41,32 +43,23 @@ static uint64_t content_hash(const struct brc_seeds *s)
     return brc_hash_bytes(s->radius, s->n * sizeof *s->radius, hash);
 }
 
-/* Folder of the cache, made when create is set; false when there is none. */
-static bool cache_folder(char folder[BRC_PATH_SIZE], bool create)
-{
-    const char *own = getenv("BRECCIA_CACHE"), *xdg = getenv("XDG_CACHE_HOME");
-    const char *home = getenv("HOME");
-    int length = -1;
-    if (own && own[0])
-        length = snprintf(folder, BRC_PATH_SIZE, "%s", own);
-    else if (xdg && xdg[0])
-        length = snprintf(folder, BRC_PATH_SIZE, "%s/breccia", xdg);
-    else if (home && home[0])
-        length = snprintf(folder, BRC_PATH_SIZE, "%s/.cache/breccia", home);
-    if (length < 0 || length >= BRC_PATH_SIZE)
-        return false;
-    struct brc_context quiet = BRC_CONTEXT_INIT;
-    return !create || brc_folder_make(&quiet, folder) == 0;
-}
-
+/* The file of a key; its folder is made where create is set. False when there is none. */
 static bool cache_path(char path[BRC_PATH_SIZE], uint64_t key, bool create)
 {
-    char folder[BRC_PATH_SIZE];
-    if (!cache_folder(folder, create))
+    static const char *const place[][2] = {
+        {"BRECCIA_CACHE", ""}, {"XDG_CACHE_HOME", "/breccia"}, {"HOME", "/.cache/breccia"}};
+    struct brc_context quiet = BRC_CONTEXT_INIT;
+    char folder[BRC_PATH_SIZE], name[32];
+    const char *value = NULL, *below = NULL;
+    for (size_t i = 0; i < sizeof place / sizeof *place && !(value && *value); i++) {
+        value = getenv(place[i][0]);
+        below = place[i][1];
+    }
+    if (!value || !*value || snprintf(folder, BRC_PATH_SIZE, "%s%s", value, below) >= BRC_PATH_SIZE)
         return false;
-    int length =
-        snprintf(path, BRC_PATH_SIZE, "%s/packing-%016llx", folder, (unsigned long long)key);
-    return length > 0 && length < BRC_PATH_SIZE;
+    snprintf(name, sizeof name, "packing-%016llx", (unsigned long long)key);
+    return (!create || brc_folder_make(&quiet, folder) == 0) &&
+           brc_folder_path(&quiet, folder, name, path) == 0;
 }
 
 static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct brc_seeds *out)
@@ -99,6 +92,8 @@ bool brc_packing_cache_load(struct brc_context *ctx, const struct brc_specimen_p
     return found;
 }
 
+/* Binary, in the order of this machine: the cache is its own, and a file from elsewhere fails at
+ * the version. */
 static bool write_seeds(const char *path, uint64_t key, const struct brc_seeds *s)
 {
     struct header h = {.version = CACHE_VERSION, .key = key, .n = s->n, .hash = content_hash(s)};

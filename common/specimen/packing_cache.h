@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finished packings on disk, in $BRECCIA_CACHE, else $XDG_CACHE_HOME/breccia, else
- * ~/.cache/breccia. A file that is damaged or of another version is made anew; a folder that cannot
- * be written is a log line, never a failure. */
+ * ~/.cache/breccia: growing the default packing takes longer than tessellating it, and a
+ * comparison, a ladder or a calibration asks for the same one again and again. A file that is
+ * damaged or of another version is made anew; a folder that cannot be written is a log line, never
+ * a failure. */
 #ifndef BRC_PACKING_CACHE_H
 #define BRC_PACKING_CACHE_H
 

@@ -35,24 +35,25 @@ static int check_near(struct brc_context *ctx, const struct brc_seeds *s, double
                       const char *key, const char *path, const struct brc_numbers *rows)
 {
     struct brc_neighbours near = {.enough = 1};
-    double least = least_distance * size, d[3];
+    double least = least_distance * size;
     int code = brc_grid_pairs(ctx, (const double(*)[3])s->x, NULL, s->n, least, &near);
     if (code == 0 && near.n > 0) {
         int32_t a = near.pair[0][0], b = near.pair[0][1];
         const double *x = s->x[b];
-        brc_sub(d, x, s->x[a]);
         code = brc_error_set(ctx, BRC_ERR_GEOMETRY, __FILE__, __LINE__,
                              "%s: %s%s%d: the seed at (%g, %g, %g) m is %.3g m from that of %s "
                              "%d; the least is %.3g m, a thousandth of the grain size: remove or "
                              "move one of them",
                              key, path, rows ? ":" : "number ", rows ? rows->line[b] : b, x[0],
-                             x[1], x[2], brc_norm(d), rows ? "line" : "number",
+                             x[1], x[2], brc_distance(x, s->x[a]), rows ? "line" : "number",
                              rows ? rows->line[a] : a, least);
     }
     brc_neighbours_free(&near);
     return code;
 }
 
+/* Cells must be cubes, as gt12's are. A jitter of 1 lets seeds of neighbouring cells meet, which
+ * check_near then refuses. */
 int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
                    struct brc_seeds *out)
 {
@@ -61,6 +62,7 @@ int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
     if (count > BRC_MAX_GRAINS)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "specimen.cells gives %g seeds, at most %g are allowed", count,
                  (double)BRC_MAX_GRAINS);
+    /* edges of a box in millimetres, divided, agree to rounding only */
     double edge = p->size[0] / cells[0];
     for (int k = 1; k < 3; k++)
         if (fabs(p->size[k] / cells[k] - edge) > 1e-6 * edge)
@@ -118,6 +120,7 @@ int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *
     return code;
 }
 
+/* Before tessellating, as cells have the numbers of their seeds. */
 int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s)
 {
     struct brc_seeds sorted = {0};

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Seed points and sphere sizes (GSL random numbers): gt12's jittered grid and vgcm's growth
- * packing. */
+ * packing. The generator is MT19937, seeded by specimen.seed alone: equal parameters give equal
+ * bits on every machine, which the C library's rand does not. Called by specimen.c; knows domains,
+ * not cells. After a failure seeds can only be freed. */
 #ifndef BRC_SEEDS_H
 #define BRC_SEEDS_H
 

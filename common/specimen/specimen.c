@@ -23,7 +23,8 @@ enum { MAX_FILE_PLANES = 1000 };
 /* Files of planes have nine digits or more: what differs by less is one plane. Three components and
  * a distance, each half a digit off in either of two planes. */
 static const double plane_digits = 4e-9;
-/* m: lengths of a specimen, however it is given */
+/* m: lengths of a specimen, however it is given. Far beyond any use; within them no square or cube
+ * of a length leaves the range of a double. */
 static const double least_length = 1e-9, largest_length = 1e9;
 /* Fewer grains across do not stand for a rock: each of them shows in the result. */
 static const double few_grains = 5;
@@ -43,8 +44,9 @@ static int number_of_sides(const struct brc_specimen_params *p)
     return p->grains == BRC_GRAINS_MESH ? MESH_SIDES : SIDES;
 }
 
-/* Prism of n sides with the area of the circle, or for gt12's mesh inscribed in it; the normal of
- * side k is at 90 deg + k 360/n. */
+/* Prism of n sides with the area of the circle, so that a nominal stress is right whatever n is, or
+ * for gt12's mesh inscribed in it; the normal of side k is at 90 deg + k 360/n. Even, so that a
+ * flat side faces either platen of a Brazilian test. */
 static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_params *p,
                          struct brc_pool *pool, struct brc_convex *domain)
 {
@@ -74,7 +76,7 @@ static int make_cylinder(struct brc_context *ctx, const struct brc_specimen_para
                                   p->diameter + p->height);
 }
 
-/* One plane a row: nx ny nz d. */
+/* One plane a row: nx ny nz d. Normals need not have the length 1 in the file. */
 static int enclose(struct brc_context *ctx, const char *path, const struct brc_numbers *rows,
                    struct brc_pool *pool, struct brc_convex *domain)
 {
@@ -146,7 +148,9 @@ static int make_seeds(struct brc_context *ctx, const struct brc_specimen *s,
     return 0;
 }
 
-/* Each sphere's centre must lie in its own cell. */
+/* Each sphere's centre must lie in its own cell: contacts of vgcm act between the centres over the
+ * facet between them. A sphere that is much larger than its neighbour can have that one's centre in
+ * its own cell, although both have one. */
 static int check_centres(struct brc_context *ctx, const struct brc_facets *f)
 {
     for (size_t i = 0; i < f->n_facets; i++) {
@@ -165,6 +169,7 @@ static int check_centres(struct brc_context *ctx, const struct brc_facets *f)
     return 0;
 }
 
+/* Both are figures that vgcm's paper gives for its specimens. */
 static void measure(struct brc_specimen *s)
 {
     const struct brc_facets *f = &s->facets;
@@ -172,18 +177,17 @@ static void measure(struct brc_specimen *s)
     size_t inner = 0;
     for (size_t c = 0; c < f->n_cells; c++)
         spheres += 4 * BRC_PI / 3 * f->radius[c] * f->radius[c] * f->radius[c];
-    for (size_t i = 0; i < f->n_facets; i++) {
-        double d[3];
-        if (f->cell[i][1] < 0 || !f->is_contact[i])
-            continue;
-        brc_sub(d, f->seed[f->cell[i][1]], f->seed[f->cell[i][0]]);
-        distance += brc_norm(d);
-        inner++;
-    }
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0 && f->is_contact[i]) {
+            distance += brc_distance(f->seed[f->cell[i][1]], f->seed[f->cell[i][0]]);
+            inner++;
+        }
     s->solid_fraction = spheres / s->domain_volume;
     s->mean_contact_distance = inner > 0 ? distance / (double)inner : 0;
 }
 
+/* Meshes have no seeds, and their domain's polygon is inscribed in the circle as gt12's is. Their
+ * number of triangles is bounded here, as only the area knows it. */
 static int tessellate(struct brc_context *ctx, struct brc_specimen *s)
 {
     const struct brc_specimen_params *p = &s->params;
@@ -203,7 +207,7 @@ static int tessellate(struct brc_context *ctx, struct brc_specimen *s)
     int code = make_seeds(ctx, s, &seeds);
     if (code == 0)
         code = brc_tess_laguerre(ctx, seeds.x, seeds.radius, seeds.n, &s->domain, p->min_area_ratio,
-                                 NULL, &s->facets);
+                                 &s->facets);
     if (code == 0 && seeds.radius)
         code = check_centres(ctx, &s->facets);
     brc_seeds_free(&seeds);
@@ -223,7 +227,8 @@ static int read_tess(struct brc_context *ctx, struct brc_specimen *s)
     return p->tess_spheres ? check_centres(ctx, &s->facets) : 0;
 }
 
-/* Extents of a domain that comes from a file; the others are within their keys' ranges. */
+/* Extents of a domain that comes from a file; the others are within their keys' ranges. The usual
+ * cause is a file in millimetres. */
 static int check_domain(struct brc_context *ctx, const struct brc_specimen *s)
 {
     double low[3], high[3];
@@ -263,6 +268,7 @@ int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_param
     return code;
 }
 
+/* Grains across by the volume of a mean grain, along the shortest side. */
 void brc_specimen_warn(struct brc_context *ctx, const struct brc_specimen *s)
 {
     double low[3], high[3], grain = cbrt(s->domain_volume / (double)s->facets.n_cells), across;

@@ -15,7 +15,8 @@ enum brc_grains {
     BRC_GRAINS_TESS
 };
 
-/* What is asked for is bounded before work begins. */
+/* What is asked for is bounded before work begins: a slip in a unit would ask for 1e12 grains, and
+ * end for want of memory after minutes. Ten million fill the memory of a large machine. */
 enum { BRC_MAX_GRAINS = 10000000 };
 
 #define BRC_SPECIMEN_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                            \

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is done around the diagram that tess_cgal.cpp makes: seeds without a cell are named, and the
  * length below which vertices are one is raised in steps until the cells pass the checks. The least
- * length that works is the one that changes the geometry least. */
+ * length that works is the one that changes the geometry least. Called by specimen.c through
+ * tess.h; knows no case and no model, and CGAL only by the C face of tess_cgal.h. */
 #include "common/specimen/tess.h"
 
+#include "common/base/invariant.h"
 #include "common/base/progress.h"
 #include "common/specimen/tess_cgal.h"
 #include "common/geometry/vec.h"
@@ -16,9 +18,12 @@
  * length is tried. */
 static const double merge_lengths[] = {1e-9, 1e-11, 1e-7};
 static const double clip_part = 0.1;
-/* what the cells of CGAL and their cuts take of the time, about */
+/* what the cells of CGAL and their cuts take of the time, about; only the bar of progress needs it
+ */
 static const double cells_part = 0.5, clips_part = 0.3;
 
+/* CGAL would take a seed outside as well, and the cuts would leave a part of its cell. The number
+ * of seeds is bounded so that those of vertices, some seven a cell, stay far within int32_t. */
 static int check_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                        const struct brc_convex *domain)
 {
@@ -31,23 +36,13 @@ static int check_seeds(struct brc_context *ctx, double (*seed)[3], const double 
         if (!is_good)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "seed %zu at (%g, %g, %g) m lies outside the domain", i,
                      seed[i][0], seed[i][1], seed[i][2]);
-        if (radius && radius[i] < 0)
-            BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "sphere %zu has the radius %g m; it must not be < 0", i,
-                     radius[i]);
+        BRC_ASSERT(!radius || radius[i] >= 0);
     }
     return 0;
 }
 
-static int copy_seeds(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
-                      struct brc_facets *out)
-{
-    BRC_TRY(brc_facets_seeds(ctx, out, n));
-    memcpy(out->seed, seed, n * sizeof *out->seed);
-    if (radius)
-        memcpy(out->radius, radius, n * sizeof *out->radius);
-    return 0;
-}
-
+/* The cut takes vertices within a tenth of the merge length as on its plane: any that it leaves
+ * just beside the plane are near enough to their new neighbours for the second merge. */
 static int clip_and_merge(struct brc_context *ctx, struct brc_cell_complex *c,
                           const struct brc_convex *domain, double merge_length,
                           struct brc_work *work)
@@ -61,7 +56,8 @@ static int clip_and_merge(struct brc_context *ctx, struct brc_cell_complex *c,
     return brc_cell_complex_snap_to_planes(ctx, c, domain);
 }
 
-/* The input and the work arrays of one call of brc_tess_laguerre; places are relative to origin. */
+/* The input and the work arrays of one call of brc_tess_laguerre; places are relative to origin.
+ * What an attempt leaves here is what its message needs. */
 struct work {
     double (*seed)[3];
     const double *radius;
@@ -78,16 +74,16 @@ struct work {
     struct brc_pool pool; /* owns the arrays */
 };
 
-/* Names the first seed without a cell and, where known, the seed that takes its place. */
+/* Names the first seed without a cell and, where known, the seed that takes its place. One without
+ * a cell at all has a hider; one whose cell lies outside the domain has none. */
 static int name_missing(struct brc_context *ctx, const struct work *w)
 {
     const double *radius = w->radius;
     for (size_t i = 0; i < w->n; i++) {
         int32_t j = w->hider[i];
-        double x[3], apart[3];
+        double x[3];
         brc_add(x, w->seed[i], w->origin);
-        brc_sub(apart, w->seed[i], w->seed[j >= 0 ? (size_t)j : i]);
-        if (j >= 0 && brc_norm2(apart) == 0)
+        if (j >= 0 && brc_distance(w->seed[i], w->seed[j]) == 0)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                      "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
                      x[1], x[2]);
@@ -105,7 +101,8 @@ static int name_missing(struct brc_context *ctx, const struct work *w)
     return 0;
 }
 
-static int make_cells(struct brc_context *ctx, struct work *w, double merge_length)
+static int make_facets(struct brc_context *ctx, struct work *w, double merge_length,
+                       struct brc_facets *out)
 {
     brc_cell_complex_free(&w->complex);
     w->complex.n_cells = w->n;
@@ -114,21 +111,19 @@ static int make_cells(struct brc_context *ctx, struct work *w, double merge_leng
     brc_work_update(&w->progress, cells_part);
     BRC_TRY(clip_and_merge(ctx, &w->complex, w->domain, merge_length, &w->progress));
     w->is_incomplete = brc_cell_complex_empty_cells(&w->complex, w->is_empty) > 0;
-    return 0;
-}
-
-static int make_facets(struct brc_context *ctx, struct work *w, double merge_length,
-                       struct brc_facets *out)
-{
-    BRC_TRY(make_cells(ctx, w, merge_length));
     if (w->is_incomplete)
         return name_missing(ctx, w);
-    BRC_TRY(copy_seeds(ctx, w->seed, w->radius, w->n, out));
+    BRC_TRY(brc_facets_seeds(ctx, out, w->n));
+    memcpy(out->seed, w->seed, w->n * sizeof *out->seed);
+    if (w->radius)
+        memcpy(out->radius, w->radius, w->n * sizeof *out->radius);
     BRC_TRY(brc_cell_complex_finish(ctx, &w->complex, out));
     return brc_facets_verify(ctx, out, w->volume, w->origin);
 }
 
-/* Tries the merge lengths in turn; the first failure is the one reported. */
+/* Tries the merge lengths in turn; the first failure is the one reported, as it is that of the
+ * length that should have done. Failures other than of geometry end the trying: more memory will
+ * not come of another length. */
 static int try_facets(struct brc_context *ctx, struct work *w, struct brc_facets *out)
 {
     const int n_tries = (int)(sizeof merge_lengths / sizeof *merge_lengths);
@@ -148,7 +143,8 @@ static int try_facets(struct brc_context *ctx, struct work *w, struct brc_facets
     return code;
 }
 
-/* Moves seeds and domain of a place far from the origin there, where no digits are lost. */
+/* Moves seeds and domain of a place far from the origin there, where no digits are lost. The domain
+ * is made anew from its moved planes: its vertices have lost their digits already. */
 static int come_near(struct brc_context *ctx, struct work *w)
 {
     const double zero[3] = {0, 0, 0};
@@ -172,6 +168,8 @@ static int come_near(struct brc_context *ctx, struct work *w)
     return 0;
 }
 
+/* Seeds are checked against the domain as it was given: moved, a seed on its surface may lie a
+ * digit outside. */
 static int prepare(struct brc_context *ctx, struct work *w)
 {
     double inertia[3][3];
@@ -185,14 +183,9 @@ static int prepare(struct brc_context *ctx, struct work *w)
 }
 
 static int tessellate(struct brc_context *ctx, struct work *w, double min_area_ratio,
-                      uint8_t *hidden, struct brc_facets *out)
+                      struct brc_facets *out)
 {
     BRC_TRY(prepare(ctx, w));
-    if (hidden) {
-        BRC_TRY(make_cells(ctx, w, merge_lengths[0] * cbrt(w->volume / (double)w->n)));
-        memcpy(hidden, w->is_empty, w->n);
-        return 0;
-    }
     BRC_TRY(try_facets(ctx, w, out));
     brc_facets_mark_contacts(out, min_area_ratio);
     if (brc_norm(w->origin) > 0)
@@ -201,13 +194,13 @@ static int tessellate(struct brc_context *ctx, struct work *w, double min_area_r
 }
 
 int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
-                      const struct brc_convex *domain, double min_area_ratio, uint8_t *hidden,
+                      const struct brc_convex *domain, double min_area_ratio,
                       struct brc_facets *out)
 {
     struct work w = {.seed = seed, .radius = radius, .n = n, .domain = domain};
     memset(out, 0, sizeof *out);
     brc_work_begin(&w.progress, ctx, "tessellating");
-    int code = tessellate(ctx, &w, min_area_ratio, hidden, out);
+    int code = tessellate(ctx, &w, min_area_ratio, out);
     brc_work_end(&w.progress);
     brc_cell_complex_free(&w.complex);
     brc_convex_free(&w.near_domain);

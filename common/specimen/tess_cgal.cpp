@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The only C++ of breccia. Exact predicates give the combinatorial structure; positions are rounded
- * from long double or, where that loses digits, from exact arithmetic. No exception leaves. */
+ * from long double or, where that loses digits, from exact arithmetic. No exception leaves.
+ *
+ * CGAL rather than a library that makes cells one by one, as Voro++ does: decisions are exact
+ * whatever the seeds, so that grids and coincident spheres need no special case, and the dual gives
+ * each vertex and facet once, shared by all cells. It is kept to one file, which takes longest of
+ * all to compile, so that templates and exceptions stop here. Cells are bounded by guards far
+ * outside; the domain, of which CGAL hears nothing, cuts them in cell_complex.c. */
 #define CGAL_NDEBUG
 /* false alarms in the headers of CGAL and Boost, seen through inlining */
 #pragma GCC diagnostic ignored "-Wnull-dereference"
@@ -54,7 +60,8 @@ using Mesh = CGAL::Constrained_Delaunay_triangulation_2<
                                                  CGAL::Delaunay_mesh_face_base_2<Kernel>>>;
 
 /* A triangle is bad when its area is above the limit or its smallest angle below 20.7 degrees (the
- * bound that is proved to end). CGAL's own area criterion mistakes the sine by a factor of two. */
+ * bound that is proved to end). CGAL's own area criterion mistakes the sine by a factor of two.
+ * Large triangles are split before flat ones. */
 class Area_criteria
 {
   public:
@@ -93,34 +100,28 @@ class Area_criteria
     double max_area;
 };
 
-/* Guards stand far around the region, so that all cells of seeds are bounded. They have the infos
- * -8 to -1. */
+/* Guards stand far around the region, at the corners of a cube, so that all cells of seeds are
+ * bounded. They have the infos -8 to -1, which no seed has. */
 constexpr int32_t n_guards = 8;
 
 /* Cramer's rule: numerators and determinant of d x = b. */
 template <class Number>
 void solve(const Number d[3][3], const Number b[3], Number x[3], Number &det)
 {
-    Number c[3];
-    auto cross = [](const Number p[3], const Number q[3], Number r[3]) {
-        r[0] = p[1] * q[2] - p[2] * q[1];
-        r[1] = p[2] * q[0] - p[0] * q[2];
-        r[2] = p[0] * q[1] - p[1] * q[0];
-    };
-    cross(d[1], d[2], c);
-    det = d[0][0] * c[0] + d[0][1] * c[1] + d[0][2] * c[2];
-    for (int k = 0; k < 3; k++)
-        x[k] = b[0] * c[k];
-    cross(d[2], d[0], c);
-    for (int k = 0; k < 3; k++)
-        x[k] = x[k] + b[1] * c[k];
-    cross(d[0], d[1], c);
-    for (int k = 0; k < 3; k++)
-        x[k] = x[k] + b[2] * c[k];
+    for (int i = 0; i < 3; i++) {
+        const Number *p = d[(i + 1) % 3], *q = d[(i + 2) % 3];
+        const Number cross[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
+                                 p[0] * q[1] - p[1] * q[0]};
+        if (i == 0)
+            det = d[0][0] * cross[0] + d[0][1] * cross[1] + d[0][2] * cross[2];
+        for (int k = 0; k < 3; k++)
+            x[k] = i == 0 ? b[i] * cross[k] : x[k] + b[i] * cross[k];
+    }
 }
 
 /* The point of equal power to four seeds p with weights w, relative to p[0]: numerators and
- * determinant; shape is the determinant over the product of the edge lengths, squared. */
+ * determinant; shape is the product of the squared edge lengths, to compare the determinant with.
+ * Written once for both kinds of numbers, and without a division, which MP_Float lacks. */
 template <class Number>
 void power_centre(const double p[4][3], const double w[4], Number x[3], Number &det, Number &shape)
 {
@@ -140,7 +141,8 @@ void power_centre(const double p[4][3], const double w[4], Number x[3], Number &
 
 void cell_centre(const std::array<Vertex, 4> &corner, double x[3])
 {
-    /* below this sine, long double may lose more than the last digits of a double */
+    /* Below this sine, long double may lose more than the last digits of a double. Few tetrahedra
+     * are so flat, and exact numbers would be slow for all. */
     constexpr long double flat = 1e-3L;
     double p[4][3], w[4];
     for (size_t i = 0; i < 4; i++) {
@@ -210,7 +212,9 @@ Sorted::Sorted(const Regular &t)
     });
 }
 
-/* The facet across the edge between two seeds: the cells around the edge, in turn. */
+/* The facet across the edge between two seeds: the cells around the edge, in turn. Its loop begins
+ * with the lowest vertex, since CGAL begins anywhere, and areas are summed from the first one. The
+ * normal is that of the seeds and not of the vertices, so that small facets have it exactly. */
 int add_facet(brc_context *ctx, const Regular &t, const Sorted::Edge &e, double (*seed)[3],
               std::vector<int32_t> &loop, brc_cell_complex *out)
 {
@@ -288,7 +292,8 @@ int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t
 }
 
 /* A mesh in an order of its own, since CGAL's follows addresses: vertices by place, triangles by
- * their vertices, each from its lowest one. */
+ * their vertices, each from its lowest one. By maps, as this kind of triangulation has no room for
+ * a number in its vertices. */
 struct Sorted_mesh {
     using Place = std::pair<double, double>;
     struct Face {
@@ -371,7 +376,8 @@ int make_mesh(brc_context *ctx, double (*corner)[2], size_t n, double max_area, 
     return copy_mesh(ctx, mesh, pool, out);
 }
 
-/* Runs work and turns exceptions into error codes. */
+/* Runs work and turns exceptions into error codes: they must not pass through C. A lack of
+ * memory is the one to be expected, as CGAL's own checks are compiled out. */
 template <class Work> int guarded(brc_context *ctx, const char *what, Work work)
 {
     try {

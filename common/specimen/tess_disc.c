@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The disc of extruded triangles. */
+/* The disc of extruded triangles: gt12's Brazilian specimen, one grain thick. A mesh gives its
+ * cells directly, so that no cut and no merging is needed: vertices are shared from the start, and
+ * walls on the rim lie on the planes of the polygon but for rounding. Their normals are set to
+ * those of the planes, since platens ask which facets face them. Called by specimen.c. */
 #include "common/geometry/hilbert.h"
 #include "common/specimen/tess.h"
 #include "common/specimen/tess_cgal.h"
@@ -20,7 +23,7 @@ struct disc {
     struct brc_pool pool; /* owns the arrays, those of the mesh included */
 };
 
-/* Direction of side k's normal, or of corner k - 1/2. */
+/* Direction of side k's normal, or of corner k - 1/2; side 0 faces +y, where a platen stands. */
 static double side_angle(const struct disc *d, double k)
 {
     return BRC_PI / 2 + 2 * BRC_PI * k / d->n_sides;

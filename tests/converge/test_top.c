@@ -6,6 +6,7 @@
 #include "common/engine/rotation.h"
 #include "common/geometry/vec.h"
 #include "tests/near.h"
+#include "tests/rotate.h"
 
 static const double MOMENT[3] = {1, 2, 3};
 static const double START[3] = {0.3, 1, 0.2};

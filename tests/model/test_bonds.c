@@ -2,6 +2,7 @@
 /* One bond between two cubes of 1 cm, driven by hand to breaking: gt12 eqs 11-15, vgcm eqs 28-33
  * and the bilinear softening, against numbers worked out from the papers. */
 #include "tests/fixture.h"
+#include "tests/rotate.h"
 
 #include <stdio.h>
 

@@ -2,6 +2,7 @@
 /* What every contact model owes to the framework, whatever its law. Runs over every registered
  * model and the null model. */
 #include "tests/fixture.h"
+#include "tests/rotate.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,6 +3,7 @@
  * z, the other seven along y (tests/data/lamellae.tess, 12 digits). What erosion leaves of them and
  * how they are bonded is known by hand. */
 #include "tests/fixture.h"
+#include "tests/rotate.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vgcm against closed forms: affine fields, rigid rotations, fracture energies. */
 #include "tests/fixture.h"
+#include "tests/rotate.h"
 
 #include "vgcm/vgcm.h"
 

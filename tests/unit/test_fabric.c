@@ -31,8 +31,8 @@ static void make_facets(double part, bool has_radii, struct brc_facets *out)
         }
     }
     CHECK_OK(&ctx, brc_convex_box(&ctx, &domain, low, high));
-    CHECK_OK(&ctx, brc_tess_laguerre(&ctx, seed, has_radii ? radius : NULL, N_SEEDS, &domain, 1e-4,
-                                     NULL, out));
+    CHECK_OK(&ctx,
+             brc_tess_laguerre(&ctx, seed, has_radii ? radius : NULL, N_SEEDS, &domain, 1e-4, out));
     brc_convex_free(&domain);
 }
 

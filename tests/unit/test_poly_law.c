@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bond and collision law of the polyhedra model against hand values. */
 #include "tests/near.h"
+#include "tests/rotate.h"
 
 #include "polyhedra/poly.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Specimens: shapes, grid, packing and its statistics, the cache on disk, bad input. */
 #include "tests/near.h"
+#include "tests/quality.h"
 
 #include "common/base/table.h"
 #include "common/specimen/specimen.h"
@@ -42,7 +43,7 @@ static uint64_t hash(const struct brc_specimen *s)
 static void check_facets(const struct brc_specimen *s)
 {
     struct brc_facets_quality q;
-    brc_facets_check(&s->facets, s->domain_volume, &q);
+    q = brc_facets_quality(&s->facets, s->domain_volume);
     CHECK_NEAR(q.volume_error, 0, 1e-12, 0);
     CHECK_NEAR(q.closure_error, 0, 1e-11, 0);
     /* every boundary facet lies on the plane of its face */

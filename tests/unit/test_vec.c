@@ -3,6 +3,7 @@
 #include "common/base/brc.h"
 #include "common/geometry/vec.h"
 #include "tests/near.h"
+#include "tests/rotate.h"
 
 /* Results here are a handful of products of numbers of order one: a few units of 2.2e-16. */
 enum { N_DRAWS = 200 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interaction points: area, centroid and second moments of the facet. */
 #include "tests/near.h"
+#include "tests/rotate.h"
 
 #include "common/geometry/vec.h"
 #include "vgcm/points.h"
