@@ -7,9 +7,8 @@
  * Vector extensions of the compiler rather than intrinsics: operators read like the formulas that
  * they implement, and the same source compiles for plain x86-64, where each operation becomes two.
  * Intrinsics stand only where the compilers' own choice was not the one instruction that there is,
- * each with the plain form beside it. AVX-512 was measured to be faster nowhere
- * (docs/numerics.md). A mask shuts off the lanes past the end of a list (brc_lanes_first), so that
- * a law need not be written a second time for single items. */
+ * each with the plain form beside it. A mask shuts off the lanes past the end of a list
+ * (brc_lanes_first), so that a law need not be written a second time for single items. */
 #ifndef BRC_LANES_H
 #define BRC_LANES_H
 

@@ -332,6 +332,7 @@ void brc_convex_shift(struct brc_convex *c, const double by[3])
     brc_planes_shift(c->plane, c->n_faces, by);
 }
 
+/* Nearer than eight sizes, a move would gain three of the 53 binary digits at most. */
 void brc_convex_origin(const double middle[3], double reach, double origin[3])
 {
     brc_set(origin, 0, 0, 0);

@@ -57,6 +57,7 @@ void brc_cell_complex_free(struct brc_cell_complex *c)
     *c = (struct brc_cell_complex){0};
 }
 
+/* The limit of int32_t is an error and not an invariant, since a case decides on the number. */
 int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex *c,
                                 const double x[3])
 {
@@ -314,6 +315,8 @@ static int close_cells(struct brc_context *ctx, struct clip *w)
     return 0;
 }
 
+/* In this order, as each part reads what the one before has decided: sides, cuts, vertices, loops,
+ * and at last the open cells. */
 static int clip_all(struct brc_context *ctx, struct clip *w, double tolerance)
 {
     BRC_TRY(clip_begin(ctx, w, tolerance));

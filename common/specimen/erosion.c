@@ -90,6 +90,8 @@ static void average_plane(struct brc_erosion *e, size_t i)
     e->plane[i].d = brc_dot(e->plane[i].n, at);
 }
 
+/* Groups are found greedily. To lie in one plane is not transitive where limits are involved, and
+ * the largest facet is the one whose plane the others must fit. */
 static void group_facets(struct brc_erosion *e)
 {
     for (size_t k = 0; k < e->n; k++) {

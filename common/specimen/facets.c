@@ -59,6 +59,8 @@ static double volume_error(const struct brc_facets *f, double domain_volume)
     return fabs(sum / domain_volume - 1);
 }
 
+/* Of the mean inner area, so that the limit goes with the size of the grains. Facets on the
+ * boundary always count: platens bear on all of them. */
 void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio)
 {
     double total = 0;
@@ -240,6 +242,7 @@ void brc_facets_shift(struct brc_facets *f, const double by[3])
     shift(f->seed, f->n_cells, by);
 }
 
+/* Areas, normals and volumes follow from these. */
 uint64_t brc_facets_hash(const struct brc_facets *f)
 {
     const size_t n[4] = {f->n_cells, f->n_facets, f->n_vertices, f->first[f->n_facets]};

@@ -288,7 +288,8 @@ static int apply_splits(struct brc_context *ctx, struct merger *w)
     return 0;
 }
 
-/* Notes v as a neighbour of u; a third different one sets near[u][0] = -2. */
+/* Marks v as a neighbour of u; a third different one sets near[u][0] = -2. Three are enough to know
+ * that u is a corner, so no longer list is kept. */
 static void add_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
 {
     if (near[u][0] == -2 || near[u][0] == v || near[u][1] == v)
@@ -301,7 +302,8 @@ static void add_neighbour(int32_t (*near)[2], int32_t u, int32_t v)
         near[u][0] = -2;
 }
 
-/* Removes the vertices that have only two neighbours: they lie in the middle of an edge. */
+/* Removes the vertices that have only two neighbours: they lie in the middle of an edge, left there
+ * by facets that are gone. All loops around the edge have them, so all lose them alike. */
 static int drop_middle_vertices(struct brc_context *ctx, struct merger *w)
 {
     struct brc_cell_complex *c = w->c;
@@ -326,6 +328,7 @@ static int drop_middle_vertices(struct brc_context *ctx, struct merger *w)
     return 0;
 }
 
+/* Passes go on until no facet is narrow: closing one may narrow its neighbours. */
 static int merge_all(struct brc_context *ctx, struct merger *w)
 {
     BRC_TRY(join_vertices(ctx, w));

@@ -212,6 +212,8 @@ static int read_faces(struct brc_neper_file *t)
     return 0;
 }
 
+/* A face that two polyhedra claim is inner; the sign of the claim would tell its direction, which
+ * the reader finds from the vertices. */
 static int read_polyhedra(struct brc_neper_file *t)
 {
     size_t n;
@@ -304,6 +306,7 @@ static int read_domain(struct brc_neper_file *t)
     return 0;
 }
 
+/* Either a second polyhedron or a face of the domain, not both and not neither. */
 static int check_faces(const struct brc_neper_file *t)
 {
     for (size_t i = 0; i < t->n_faces; i++) {

@@ -38,6 +38,8 @@ static void come_near(struct tess *t, const double middle[3])
         brc_sub(t->file.seed[i], t->file.seed[i], t->origin);
 }
 
+/* To metres. The last digit of the largest coordinate is what any vertex may be off by; whoever
+ * judges whether faces are flat and cells are closed allows for that. */
 static void scale(struct tess *t, double metres)
 {
     double low[3], high[3], largest = 0;
@@ -273,6 +275,8 @@ static void keep_seeds_inside(struct tess *t)
     }
 }
 
+/* Weights are radii of spheres only where the case says so, as the file does not tell. Without
+ * spheres the seeds are no more than points to measure the cells from. */
 static int make_facets(struct tess *t, struct brc_cell_complex *c, bool has_spheres, double volume,
                        struct brc_facets *out)
 {

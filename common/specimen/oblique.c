@@ -33,6 +33,7 @@ double brc_oblique_cos(const struct brc_facets *f, double (*centre)[3], size_t f
     return brc_dot(branch, f->normal[facet]) / brc_norm(branch);
 }
 
+/* What carries a contact between two grains; rounding has left no area to some facets. */
 static bool is_counted(const struct brc_facets *f, size_t facet)
 {
     return f->cell[facet][1] >= 0 && f->is_contact[facet] && f->area[facet] > 0;

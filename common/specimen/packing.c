@@ -97,6 +97,7 @@ static bool is_inside(const struct brc_convex *domain, const double x[3], double
     return true;
 }
 
+/* In the box around the domain; those outside of the domain are drawn again. */
 static void random_point(gsl_rng *rng, const double low[3], const double high[3], double x[3])
 {
     for (int k = 0; k < 3; k++)
@@ -155,7 +156,9 @@ static int list_neighbours(struct brc_context *ctx, struct packing *p)
     return brc_grid_pairs(ctx, p->x, p->radius, p->n, p->skin, &p->near);
 }
 
-/* Overlap times the direction, between spheres and against the domain's planes. */
+/* Overlap times the direction, between spheres and against the domain's planes. The mean is over
+ * pairs of spheres alone. Two centres at one place have no direction; their other neighbours part
+ * them. */
 static void repel(struct packing *p)
 {
     double sum = 0;
@@ -250,7 +253,8 @@ static double part_at_rest(double ratio, double rest)
     return fmin(fmax(log(ratio) / log(rest), 0), 1);
 }
 
-/* Grows the spheres and relaxes them until they rest, and longer while a cell lacks its centre. */
+/* Grows the spheres and relaxes them until they rest, and longer while a cell lacks its centre:
+ * then rest is asked for ten times as strictly, until it is as strict as is of any use. */
 static int grow(struct brc_context *ctx, struct packing *p)
 {
     double ratio = 1, rest = REST, done = 0;

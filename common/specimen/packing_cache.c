@@ -62,6 +62,8 @@ static bool cache_path(char path[BRC_PATH_SIZE], uint64_t key, bool create)
            brc_folder_path(&quiet, folder, name, path) == 0;
 }
 
+/* The number of seeds is checked before memory is asked for, and the content's hash after it is
+ * read: what is cut off, or was written by a disk that has failed, is not found. */
 static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct brc_seeds *out)
 {
     struct header h;
@@ -108,6 +110,8 @@ static bool write_seeds(const char *path, uint64_t key, const struct brc_seeds *
     return fclose(file) == 0 && written;
 }
 
+/* The seeds go on as they are whether they can be kept or not. A file under the number of a process
+ * that was killed stays; it is never read. */
 void brc_packing_cache_save(struct brc_context *ctx, const struct brc_specimen_params *p,
                             const struct brc_convex *domain, const struct brc_seeds *seeds)
 {

@@ -120,7 +120,6 @@ int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *
     return code;
 }
 
-/* Before tessellating, as cells have the numbers of their seeds. */
 int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s)
 {
     struct brc_seeds sorted = {0};

@@ -127,6 +127,8 @@ static int make_domain(struct brc_context *ctx, const struct brc_specimen_params
     return BRC_ERR_INTERNAL;
 }
 
+/* Packings are kept sorted, so that one from the cache has the same bits as one that is made. Seeds
+ * are sorted before they are tessellated, as cells have their numbers. */
 static int make_seeds(struct brc_context *ctx, const struct brc_specimen *s,
                       struct brc_seeds *seeds)
 {
@@ -214,7 +216,8 @@ static int tessellate(struct brc_context *ctx, struct brc_specimen *s)
     return code;
 }
 
-/* Cells and domain as a file has them. */
+/* Cells and domain as a file has them: nothing is left to be tessellated, and another shape in the
+ * case would be a contradiction that nobody sees. */
 static int read_tess(struct brc_context *ctx, struct brc_specimen *s)
 {
     const struct brc_specimen_params *p = &s->params;
@@ -254,6 +257,7 @@ static int make_or_read(struct brc_context *ctx, struct brc_pool *pool, struct b
     return is_read ? 0 : tessellate(ctx, s);
 }
 
+/* Half of a specimen is freed here, so that callers have one to free or none. */
 int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_params *params,
                         struct brc_specimen *out)
 {

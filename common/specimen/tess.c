@@ -193,6 +193,7 @@ static int tessellate(struct brc_context *ctx, struct work *w, double min_area_r
     return 0;
 }
 
+/* What work was done before a failure is freed here, and out holds nothing then. */
 int brc_tess_laguerre(struct brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                       const struct brc_convex *domain, double min_area_ratio,
                       struct brc_facets *out)

@@ -280,8 +280,7 @@ int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t
         points.emplace_back(Weighted(Point(seed[i][0], seed[i][1], seed[i][2]), weight(i)),
                             static_cast<int32_t>(i));
     t.insert(points.begin(), points.end());
-    for (size_t i = 0; i < n; i++)
-        hider[i] = 0;
+    std::fill(hider, hider + n, 0);
     for (auto v = t.finite_vertices_begin(); v != t.finite_vertices_end(); ++v)
         if (v->info() >= 0)
             hider[v->info()] = -1;

@@ -99,6 +99,8 @@ static int add_wall(struct brc_context *ctx, struct disc *d, size_t t, int k)
     return brc_cell_complex_add_facet(ctx, &d->complex, &facet, loop);
 }
 
+/* Loops turn counter-clockwise about their normals, hence two corners of the bottom change places.
+ */
 static int add_prisms(struct brc_context *ctx, struct disc *d)
 {
     for (size_t t = 0; t < d->mesh.n_triangles; t++) {
