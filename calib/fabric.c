@@ -53,6 +53,8 @@ static double sphere_radius(const struct brc_facets *f, int32_t cell)
     return f->radius[cell] > 0 ? f->radius[cell] : cbrt(3 * f->volume[cell] / (4 * BRC_PI));
 }
 
+/* vgcm's rule: seeds nearer than the two radii and the gap. By seeds and not centres, as the model
+ * has it. */
 static bool is_contact(const struct brc_facets *f, size_t i, double seed_distance, double gap)
 {
     double radii = sphere_radius(f, f->cell[i][0]) + sphere_radius(f, f->cell[i][1]);
@@ -91,6 +93,8 @@ static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
     }
 }
 
+/* The boundary layer is left out of the volume as its facets are of the sums: else a small specimen
+ * would seem soft. */
 int calib_fabric_measure(struct brc_context *ctx, const struct brc_facets *facets,
                          const struct calib_fabric_rules *rules, struct calib_fabric *out)
 {

@@ -36,11 +36,16 @@ add_note(struct calib_guess *g, const char *format, ...)
     va_end(args);
 }
 
+/* The keys are those of the model's list; that each is there, with this unit, is what a test
+ * checks. */
 static void add(struct calib_guess *g, const char *key, const char *unit, double value)
 {
     g->value[g->n++] = (struct calib_value){key, unit, value};
 }
 
+/* Only what cannot be guessed is asked for: both moduli and one tensile strength. 0 stands for a
+ * strength or an angle that is not known; what follows from it is then left out, and the note says
+ * so. */
 int calib_rock_from_targets(struct brc_context *ctx, const struct calib_targets *targets,
                             struct calib_rock *rock)
 {
@@ -73,6 +78,8 @@ int calib_rock_from_targets(struct brc_context *ctx, const struct calib_targets 
 
 /* ---- parts that both models share ---------------------------------------------------------- */
 
+/* What both models begin with: stiffnesses per unit strain, the moduli that they make, and how far
+ * nu is off where it was out of reach. */
 static int guess_elastic(struct brc_context *ctx, const struct calib_rock *rock,
                          const struct calib_inverse *how, struct calib_stiffness *s,
                          struct calib_guess *out)
@@ -138,6 +145,7 @@ static double guess_tau(const struct calib_rock *rock, struct calib_guess *out)
     return 0;
 }
 
+/* The contact is linear, equal on both sides: E-bar by the coverage of the contacts, eta by nu. */
 int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
                      const struct calib_fabric *fabric, const struct calib_guess_params *params,
                      struct calib_guess *out)
@@ -173,6 +181,8 @@ static double largest_bond_strain(double nu)
     return 0.5 * (1 - nu) + (1 + nu) / sqrt(2);
 }
 
+/* The contact is bimodular: an open facet has its bond alone. So there are two more unknowns than
+ * targets, and bond_ratio and bond_share choose them. */
 int calib_guess_polyhedra(struct brc_context *ctx, const struct calib_rock *rock,
                           const struct calib_fabric *fabric,
                           const struct calib_guess_params *params, struct calib_guess *out)

@@ -64,6 +64,8 @@ struct calib_value {
     double value;           /* SI */
 };
 
+/* Values in the order of the model's way of thought: stiffness, strength, friction. A value that
+ * could not be guessed is absent, and the note says why; the rest can still be used. */
 struct calib_guess {
     size_t n;
     struct calib_value value[CALIB_MAX_VALUES];
@@ -72,6 +74,8 @@ struct calib_guess {
     char note[1024];  /* what was estimated how, a sentence each */
 };
 
+/* The guess for each model. Fails where nu is out of reach and `nearest` is off; the message gives
+ * the range. */
 int calib_guess_vgcm(struct brc_context *ctx, const struct calib_rock *rock,
                      const struct calib_fabric *fabric, const struct calib_guess_params *params,
                      struct calib_guess *out);

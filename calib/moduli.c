@@ -28,6 +28,7 @@ static double slip_integral(double u)
     return pow(u, 3) / 3 - pow(u, 5) / 5;
 }
 
+/* u0: facets whose normals are nearer to the load close. Without lateral lengthening all do. */
 static double opening_limit(double nu)
 {
     return nu > 0 ? sqrt(nu / (1 + nu)) : 0;
@@ -81,7 +82,8 @@ int calib_moduli(struct brc_context *ctx, const struct calib_stiffness *s, doubl
     return 0;
 }
 
-/* t_closed that goes with n_closed = 1: for a given nu the lateral balance is linear in it. */
+/* t_closed that goes with n_closed = 1: for a given nu the lateral balance is linear in it, so that
+ * two evaluations give the root. */
 static double shear_of(const struct calib_inverse *how, double nu)
 {
     struct calib_stiffness normal = {how->n_ratio, 1, 0, 0}, shear = {0, 0, how->t_ratio, 1};
@@ -99,6 +101,8 @@ static int reachable(struct brc_context *ctx, const struct calib_inverse *how, d
     return 0;
 }
 
+/* E only scales all stiffnesses, so that the ratio of shear to normal follows from nu alone, and
+ * the scale from E at the end. */
 int calib_moduli_invert(struct brc_context *ctx, double e, double nu,
                         const struct calib_inverse *how, struct calib_stiffness *out)
 {

@@ -10,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Number of the test that measures a target, -1: none does. */
+/* Number of the test that measures a target, -1: none does. By name, so that calib need not know
+ * which tests there are. */
 static int test_of(const struct calib_target *t)
 {
     const char *name = calib_quantities[t->quantity].test;
@@ -50,6 +51,8 @@ static int check_variable(struct brc_context *ctx, const struct calib_objective 
     return 0;
 }
 
+/* Not more variables than targets: a search would otherwise have a whole surface of answers and
+ * report one. */
 int calib_objective_check(struct brc_context *ctx, const struct calib_objective *o,
                           struct brc_param_list list)
 {
@@ -67,6 +70,8 @@ int calib_objective_check(struct brc_context *ctx, const struct calib_objective 
     return 0;
 }
 
+/* An error and no clamp: a clamped point would give the search a value for a place at which it
+ * never was. */
 static int check_bounds(struct brc_context *ctx, const struct calib_objective *o, const double *x)
 {
     for (size_t i = 0; i < o->n; i++) {
@@ -78,6 +83,8 @@ static int check_bounds(struct brc_context *ctx, const struct calib_objective *o
     return 0;
 }
 
+/* A target whose deviation is not known counts as known to a stated part of itself, the same for
+ * all. */
 static int add_residual(struct brc_context *ctx, const struct calib_objective *o,
                         const struct calib_target *t, const struct brc_summary *summary,
                         struct calib_evaluation *out)
@@ -114,6 +121,8 @@ static bool is_asked(const struct calib_objective *o, int test)
     return false;
 }
 
+/* All tests first, then the residuals in the order of the targets, which is what a search with
+ * vectors needs to stay the same. */
 int calib_objective_evaluate(struct brc_context *ctx, const struct calib_objective *o,
                              const double *x, struct calib_evaluation *out)
 {

@@ -7,7 +7,8 @@
 #include "calib/target.h"
 #include "common/output/output.h"
 
-/* One free parameter: a key of the model's list, with bounds in SI. */
+/* One free parameter: a key of the model's list, with bounds in SI. Only quantities can be varied,
+ * not choices. */
 struct calib_variable {
     const char *key;
     double low, high;
@@ -22,13 +23,15 @@ struct calib_trial {
     const double *x; /* SI */
 };
 
-/* Runs a trial and fills the summary: at least its results. */
+/* Runs a trial and fills the summary: at least its results. A function pointer, so that tests of a
+ * search can put a formula in place of a simulation. */
 struct calib_runner {
     int (*run)(struct brc_context *ctx, void *user, const struct calib_trial *trial,
                struct brc_summary *out);
     void *user;
 };
 
+/* What is to be met, by what. All pointers are the caller's and outlive the calls. */
 struct calib_objective {
     const char *model;
     const struct calib_targets *targets;

@@ -13,6 +13,8 @@
 
 enum { ASSIGNMENT_SIZE = 256 };
 
+/* Seventeen digits and the SI unit: the same double when it is read, whatever the unit of the
+ * default. */
 int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, size_t i,
                      struct brc_param_list list, char *buffer, size_t size)
 {
@@ -21,14 +23,14 @@ int calib_assignment(struct brc_context *ctx, const struct calib_trial *trial, s
     if (!p || p->kind != BRC_REAL)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "calibration: %s.%s is not a quantity of the model",
                  trial->model, key);
-    int n = snprintf(buffer, size, "%s.%s=%.17g%s%s", trial->model, key, trial->x[i],
-                     brc_unit_blank(p->unit), brc_unit_shown(p->unit));
-    if (n >= (int)size)
+    if (snprintf(buffer, size, "%s.%s=%.17g%s%s", trial->model, key, trial->x[i],
+                 brc_unit_blank(p->unit), brc_unit_shown(p->unit)) >= (int)size)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "calibration: %s.%s is too long", trial->model, key);
     return 0;
 }
 
-/* Reads the test's case with the trial's values; pictures are left out. */
+/* By the way of --set, so that a value passes the checks of any other; a case of another test than
+ * it is given for is an error, as its results would have the right names and the wrong meaning. */
 static int read_case(struct brc_context *ctx, const struct calib_simulator *s,
                      const struct calib_trial *trial, const struct brc_model *model,
                      struct brc_case *run_case)
@@ -44,15 +46,16 @@ static int read_case(struct brc_context *ctx, const struct calib_simulator *s,
     }
     overrides[trial->n] = "output.plots=off";
     BRC_TRY(brc_case_read(ctx, run_case, s->path[trial->test], overrides, (int)trial->n + 1));
-    if (run_case->test.kind != trial->test) {
+    if (run_case->test.kind != trial->test)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "calibration: %s is given as the %s test, but its test.kind is %s",
                  s->path[trial->test], brc_rigs_at(trial->test)->name,
                  brc_rigs_at(run_case->test.kind)->name);
-    }
     return 0;
 }
 
+/* Results of the trial before are replaced, those that were there before the first trial are not:
+ * the folder may be somebody's. */
 static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
                      const struct calib_trial *trial, const struct brc_model *model,
                      const struct brc_case *run_case, struct brc_summary *out)
@@ -79,6 +82,8 @@ static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
     return code;
 }
 
+/* A test that a target asks for must have a case: to leave its residual out would be a fit to
+ * something else. */
 int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial *trial,
                    struct brc_summary *out)
 {

@@ -7,6 +7,7 @@
 #include "common/rigs/rigs.h"
 #include "common/specimen/specimen.h"
 
+/* More than models have stiffnesses and strengths. */
 enum { CALIB_MAX_VARIABLES = 32 };
 
 /* Zero all but path and dir before the first run. */
@@ -18,7 +19,8 @@ struct calib_simulator {
     bool has_run[BRC_MAX_RIGS]; /* its folder holds results of this simulator */
 };
 
-/* To be used as calib_runner.run with a struct calib_simulator as user. */
+/* To be used as calib_runner.run with a struct calib_simulator as user. Fails as the run does, and
+ * when no case is given for the test. */
 int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial *trial,
                    struct brc_summary *out);
 void calib_simulator_free(struct calib_simulator *s);

@@ -54,6 +54,8 @@ static int read_target(struct brc_context *ctx, const struct brc_casefile *c, in
     return 0;
 }
 
+/* Sections by name, as models have theirs in a case; a rock without any is an error, since every
+ * fit would be perfect. */
 static int read_targets(struct brc_context *ctx, const struct brc_casefile *c,
                         struct calib_targets *out)
 {

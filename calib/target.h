@@ -38,6 +38,8 @@ struct calib_quantity {
 };
 extern const struct calib_quantity calib_quantities[CALIB_N_QUANTITIES];
 
+/* A value without a deviation is common in the literature; 0 says so, and the objective decides
+ * what to take. */
 struct calib_target {
     enum calib_quantity_code quantity;
     double value;     /* SI */
@@ -53,7 +55,7 @@ struct calib_targets {
 };
 
 int calib_targets_read(struct brc_context *ctx, const char *path, struct calib_targets *out);
-/* NULL when the rock has no value of this quantity. */
+/* NULL when the rock has no value of this quantity: zero is a value (a friction angle may be 0). */
 const struct calib_target *calib_targets_find(const struct calib_targets *t,
                                               enum calib_quantity_code quantity);
 

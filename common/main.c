@@ -75,6 +75,8 @@ static const char *model_of(const struct options *o, const struct brc_case *run_
     return o->model ? o->model : run_case->file.head.model;
 }
 
+/* The folder is looked at before the specimen is made, and once more by the run itself under its
+ * lock: minutes lie between the two. */
 static int run_model(struct brc_context *ctx, const struct options *o,
                      const struct brc_case *run_case, const char *dir)
 {
@@ -151,6 +153,8 @@ static int act_info(struct brc_context *ctx, const struct options *o)
     return brc_info_print(ctx, stdout, o->operand);
 }
 
+/* Either a table or a format. Both have their values in -o FILE or on standard output, and neither
+ * is a default of the other. */
 static int act_export(struct brc_context *ctx, const struct options *o)
 {
     const char *what = o->format ? o->format : o->table;
@@ -161,6 +165,8 @@ static int act_export(struct brc_context *ctx, const struct options *o)
                     : brc_export_format(ctx, &options, o->format);
 }
 
+/* One section, or all. The lists are those of the reader of case files, so that what is printed is
+ * what is read. */
 static int act_params(struct brc_context *ctx, const struct options *o)
 {
     const char *name;
@@ -308,6 +314,8 @@ static void print_statuses(FILE *out)
     fputc('\n', out);
 }
 
+/* The manual page and the completion of the shell are made from what these two print
+ * (docs/make-man, docs/make-completion), so that their form is part of the interface. */
 static void print_help(FILE *out)
 {
     fputs("breccia " BRC_VERSION ": fracture of bonded-grain rock, contact models side by side\n\n"
@@ -322,6 +330,7 @@ static void print_help(FILE *out)
     print_statuses(out);
 }
 
+/* Rows of the table in their order: options that belong together stand together there. */
 static void print_command_help(FILE *out, const struct command *c)
 {
     fprintf(out, "usage: breccia %s%s%s%s\n\n%s\n%s", c->name, *c->operand ? " " : "", c->operand,
@@ -341,6 +350,8 @@ static void print_command_help(FILE *out, const struct command *c)
 
 /* ---- reading the command line -------------------------------------------------------------- */
 
+/* By the whole name: names that are cut are not taken, as the next version may have another option
+ * that begins alike. */
 static const struct option *find_option(const struct command *c, const char *name, size_t length)
 {
     for (int i = 0; i < N_OPTIONS; i++)
@@ -350,6 +361,8 @@ static const struct option *find_option(const struct command *c, const char *nam
     return NULL;
 }
 
+/* The options of other commands are no candidates: to be sent from one command to an option of
+ * another would help nobody. */
 static int fail_option(struct brc_context *ctx, const struct command *c, const char *text)
 {
     char name[64], hint[BRC_HINT_SIZE];
@@ -363,7 +376,8 @@ static int fail_option(struct brc_context *ctx, const struct command *c, const c
              *hint ? "" : "; see breccia COMMAND --help");
 }
 
-/* Puts the value, NULL for a flag, where the table says. */
+/* Puts the value, NULL for a flag, where the table says. Of an option that is given twice the last
+ * value counts, but for --set, of which each is one more. */
 static int read_option(struct brc_context *ctx, struct options *o, const struct option *option,
                        const char *value)
 {
@@ -463,6 +477,8 @@ static int act(struct brc_context *ctx, const struct command *c, char **words, s
     return c->on_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
 }
 
+/* Without a word the help goes to standard error, with the status of a bad command line: a script
+ * that has lost its arguments shall notice. */
 static int act_first(struct brc_context *ctx, char **words, struct options *o)
 {
     char hint[BRC_HINT_SIZE];
@@ -491,7 +507,9 @@ static int act_first(struct brc_context *ctx, char **words, struct options *o)
              *hint ? "" : "; see breccia --help");
 }
 
-/* The command that goes on with an interrupted one, or does it anew where nothing was saved. */
+/* The command that goes on with an interrupted one, or does it anew where nothing was saved. The
+ * words are those of the user, quoted for the shell, so that it can be pasted whatever is in them.
+ */
 static void print_resume(FILE *out, int code, const struct options *o)
 {
     bool is_saved = code == BRC_ERR_INTERRUPTED;
@@ -505,6 +523,8 @@ static void print_resume(FILE *out, int code, const struct options *o)
         brc_console_word(out, "--force");
 }
 
+/* Standard output is closed here, not by exit: a table that did not arrive whole, as on a full
+ * disk, is a failure of the command. The first failure is the one that is told. */
 int main(int argc, char **argv)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;

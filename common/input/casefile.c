@@ -15,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A mapping that is open while the file is read. */
+/* A mapping that is open while the file is read. Levels are an array, not the stack of a recursion:
+ * three are allowed, and a deeper file is an error at once. */
 struct level {
     char key[BRC_CASEFILE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
     int line, column;                /* of that key */
@@ -74,6 +75,7 @@ bool brc_casefile_is_text(const char *text)
     return good_bytes(text, strlen(text)) == strlen(text);
 }
 
+/* Before libyaml sees a byte: what it says of bad ones has no line. */
 static int check_bytes(struct brc_context *ctx, const char *path, const char *text, size_t size)
 {
     int line = 1;
@@ -208,6 +210,7 @@ static int add_value(struct reader *r, const char *text, int line)
     return 0;
 }
 
+/* A sequence is one value, "a, b, c": the lists know triples, and --set writes them so. */
 static int add_item(struct reader *r, const char *text)
 {
     size_t old = strlen(r->sequence), n = strlen(text);
@@ -255,6 +258,8 @@ static int read_null(struct reader *r)
     return 0;
 }
 
+/* A key, a value, or an item of a sequence, by what is open. An empty plain value is YAML's null;
+ * in quotes it is a text. */
 static int read_scalar(struct reader *r, const yaml_event_t *event, int line)
 {
     const char *text = (const char *)event->data.scalar.value;
@@ -285,6 +290,8 @@ static struct brc_casefile_place *place_of(struct reader *r, const struct level 
     return level->place < 0 ? &r->c->root : &r->c->sections[level->place];
 }
 
+/* A mapping under a section is a group of keys, `interaction: {rule: gap, gap: 1 mm}`; it has a
+ * place of its own, where the writer adds keys to it. */
 static int open_mapping(struct reader *r, const yaml_event_t *event, int line)
 {
     char name[2 * BRC_CASEFILE_KEY_SIZE];
@@ -310,6 +317,8 @@ static int open_mapping(struct reader *r, const yaml_event_t *event, int line)
     return 0;
 }
 
+/* A mapping in braces ends behind its brace, one on lines of its own with its last value: libyaml's
+ * mark of the latter lies at the next key, behind comments that are not its own. */
 static int close_mapping(struct reader *r, const yaml_event_t *event)
 {
     r->depth--;
@@ -346,8 +355,7 @@ static int open_sequence(struct reader *r, const yaml_event_t *event, int line)
 
 static int close_sequence(struct reader *r, const yaml_event_t *event)
 {
-    bool is_flow = r->c->text[r->begin] == '[';
-    if (is_flow)
+    if (r->c->text[r->begin] == '[')
         end_value(r, &event->end_mark);
     int code = add_value(r, r->sequence, r->level[r->depth - 1].line);
     free(r->sequence);
@@ -372,6 +380,8 @@ static int refuse_extras(struct reader *r, const yaml_event_t *event, int line)
     return 0;
 }
 
+/* Stream and document events carry nothing here, but that a second document is refused: which of
+ * the two would be the case? */
 static int read_event(struct reader *r, const yaml_event_t *event)
 {
     int line = (int)event->start_mark.line + 1;
@@ -414,6 +424,7 @@ static int fail_yaml(struct reader *r, const yaml_parser_t *parser)
              parser->context ? parser->context : "");
 }
 
+/* Events are freed one by one, also those that were refused. */
 static int read_events(struct reader *r, yaml_parser_t *parser)
 {
     yaml_event_t event;
@@ -457,6 +468,7 @@ int brc_casefile_parse(struct brc_context *ctx, const char *path, const char *te
     return brc_casefile_top_level(ctx, c);
 }
 
+/* One reader for all inputs (input_file.h): devices and endless files are refused there. */
 int brc_casefile_read(struct brc_context *ctx, const char *path, struct brc_casefile *c)
 {
     memset(c, 0, sizeof *c);
@@ -470,6 +482,8 @@ int brc_casefile_read(struct brc_context *ctx, const char *path, struct brc_case
     return code;
 }
 
+/* Read like an entry of the file, with line 0. Dots part section, mapping and key; behind the first
+ * = everything is the value, dots and = included. */
 int brc_casefile_override(struct brc_context *ctx, struct brc_casefile *c, const char *assignment)
 {
     static const char no_form[] = "--set: '%.60s' is not of the form section.key=value";

@@ -21,6 +21,8 @@ static int find_twin(const struct brc_casefile *c, size_t i, struct brc_param_li
     return 0;
 }
 
+/* After all entries, so that a slip in the name of the key itself is told first, with what was
+ * meant. */
 static int check_required(struct brc_context *ctx, const struct brc_casefile *c,
                           const char *section, struct brc_param_list list)
 {
@@ -40,6 +42,8 @@ static int check_required(struct brc_context *ctx, const struct brc_casefile *c,
     return 0;
 }
 
+/* An older name is read and said in the log, once a run: a case of last year still runs, and its
+ * owner learns the new name. */
 int brc_casefile_section(struct brc_context *ctx, const struct brc_casefile *c, const char *section,
                          struct brc_param_list list, void *values)
 {

@@ -24,6 +24,7 @@ const char *brc_casefile_where(const struct brc_casefile *c, int line, bool is_o
     return where;
 }
 
+/* A search from the start: a case has a handful of sections. */
 const struct brc_casefile_place *brc_casefile_find_section(const struct brc_casefile *c,
                                                            const char *name)
 {
@@ -45,6 +46,8 @@ const char *brc_casefile_key(const struct brc_casefile_entry *e, struct brc_para
     return renamed ? renamed->key : e->key;
 }
 
+/* From the end: of several overrides of a key the last one holds, and each stands behind the file's
+ * own entries. */
 const struct brc_casefile_entry *brc_casefile_find_entry(const struct brc_casefile *c,
                                                          const char *section, const char *key,
                                                          struct brc_param_list list)

@@ -12,6 +12,7 @@ static const struct brc_param case_params[] = {BRC_PARAM_LIST(BRC_CASEFILE_PARAM
 const struct brc_param_list brc_casefile_param_list =
     BRC_PARAMS(case_params, struct brc_casefile_params);
 
+/* By the text and not as a number: `breccia: 1.0` is not the key's form, whatever its value. */
 static int check_version(struct brc_context *ctx, const struct brc_casefile *c)
 {
     const struct brc_casefile_entry *e =
@@ -55,7 +56,8 @@ static int check_top_level(struct brc_context *ctx, const struct brc_casefile *c
     return 0;
 }
 
-/* Splits `models` at commas and blanks. */
+/* Splits `models` at commas and blanks: a sequence of YAML and a text both come as "a, b". Whether
+ * there are such models is not known here: input knows no model. */
 static int split_models(struct brc_context *ctx, struct brc_casefile *c)
 {
     char where[BRC_CASEFILE_WHERE_SIZE];

@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes [begin, end) of the text become a line break (where there is one), blanks and the parts. */
+/* Bytes [begin, end) of the text become a line break (where there is one), blanks and the parts.
+ * One edit at a time: the next one needs the places of the case that this one has made. */
 struct edit {
     size_t begin, end;
     const char *line;
@@ -47,7 +48,8 @@ static const char *escape(const char *c)
     return NULL;
 }
 
-/* The value as YAML reads it back; allocated, NULL when out of memory. */
+/* The value as YAML reads it back; allocated, NULL when out of memory. Double quotes, since only
+ * they have escapes. An escape has at most six bytes. */
 static char *quote(struct brc_context *ctx, const char *value)
 {
     char *text = brc_alloc(ctx, 6 * strlen(value) + 3, 1), *at = text;
@@ -136,7 +138,8 @@ static int add(struct brc_context *ctx, struct brc_casefile *c, const char *sect
     return append(ctx, c, place, key, value);
 }
 
-/* Is the entry all that its mapping holds? */
+/* Is the entry all that its mapping holds? Nested mappings count: without their section they would
+ * be lost with it. */
 static bool is_alone(const struct brc_casefile *c, const struct brc_casefile_entry *e)
 {
     const char *name = e->place < 0 ? "" : c->sections[e->place].name;
@@ -175,6 +178,8 @@ int brc_casefile_remove(struct brc_context *ctx, struct brc_casefile *c, const c
     return apply(ctx, c, &edit);
 }
 
+/* The entry that gives the key its value is the one that is replaced, under whatever name it
+ * stands: an older name stays as the user wrote it. */
 int brc_casefile_write(struct brc_context *ctx, struct brc_casefile *c, const char *section,
                        const char *key, struct brc_param_list list, const char *value)
 {

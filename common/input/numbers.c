@@ -31,6 +31,8 @@ void brc_numbers_free(struct brc_numbers *t)
     *t = (struct brc_numbers){0};
 }
 
+/* Every message about a line gives the form of a good one: whoever has the wrong file sees it at
+ * once. */
 static int fail_at(const struct reader *r, const char *what)
 {
     BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s: %s:%d: %s; expected '%s', finite numbers only", r->key,
@@ -54,6 +56,8 @@ static int split(const char *text, double *value, int high)
     }
 }
 
+/* Comments and empty lines are no rows. The width of the first row is that of all: a file in which
+ * it changes has lost a column somewhere. */
 static int read_line(struct reader *r, char *text)
 {
     double value[BRC_NUMBERS_MAX_WIDTH + 1];
@@ -77,6 +81,8 @@ static int read_line(struct reader *r, char *text)
     return 0;
 }
 
+/* Lines are cut in place, in the text as it was read. A byte 0 would end the text early, and the
+ * rest of the file would be lost without a word. */
 static int read_lines(struct reader *r, char *text, size_t size)
 {
     char *next;

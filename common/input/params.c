@@ -16,7 +16,8 @@
 
 enum { PLACE_SIZE = 320 };
 
-/* An interval such as "(0, inf)". */
+/* An interval such as "(0, inf)". Open bounds are needed: a stiffness of 0 is no stiffness, a
+ * strain of 0 may be one. */
 struct interval {
     double low, high;
     bool low_open, high_open;
@@ -56,7 +57,8 @@ static double scaled_number(const char *number, size_t length, double factor)
     return strtod(text, NULL);
 }
 
-/* Text without the blanks at its ends, in buffer; NULL when it does not fit. */
+/* Text without the blanks at its ends, in buffer; NULL when it does not fit, so that nothing is cut
+ * in silence and then read as another value. */
 static const char *trimmed(const char *text, size_t n, char *buffer, size_t size)
 {
     while (n > 0 && isspace((unsigned char)*text)) {
@@ -83,6 +85,9 @@ static size_t split_quantity(const char *text, const char **unit)
     return length;
 }
 
+/* What is refused has a message of its own where the slip is a known one: a decimal comma, a
+ * missing unit, no number. A number without a unit is never taken for SI: in a case that gives mm
+ * elsewhere it is as likely to be mm. */
 int brc_params_quantity(struct brc_context *ctx, const char *text, const char *unit, double *value,
                         const char *where)
 {
@@ -134,6 +139,7 @@ static bool parse_interval(const char *text, struct interval *r)
     return (r->low_open || low == '[') && (r->high_open || high == ']') && r->low <= r->high;
 }
 
+/* In SI, after the conversion: ranges are declared once, units are the user's choice. */
 static int check_range(struct brc_context *ctx, const struct brc_param *p, double value,
                        const char *text, const char *place)
 {
@@ -152,7 +158,8 @@ static int check_range(struct brc_context *ctx, const struct brc_param *p, doubl
 
 /* ---- one value of each kind ---------------------------------------------------------------- */
 
-/* A default that is found later, from what else is known; NAN until then. */
+/* A default that is found later, from what else is known; NAN until then, so that a use before that
+ * shows in all that follows. */
 static bool is_auto(const struct brc_param *p)
 {
     return p->kind == BRC_REAL && p->default_text && strcmp(p->default_text, BRC_AUTO) == 0;
@@ -187,7 +194,8 @@ static int set_int(struct brc_context *ctx, const struct brc_param *p, void *to,
     return check_range(ctx, p, (double)value, text, place);
 }
 
-/* Name k of a |-separated list in buffer; false past the last. */
+/* Name k of a |-separated list in buffer; false past the last. The list is one text, as declared
+ * and as shown: an array of names would have to be declared apart from the row of the key. */
 static bool choice_name(const char *choices, int k, char *buffer, size_t size)
 {
     for (; k > 0; k--) {
@@ -204,6 +212,8 @@ static bool choice_name(const char *choices, int k, char *buffer, size_t size)
     return true;
 }
 
+/* By the exact name. Numbers of choices are not taken: they would change when a choice is added
+ * between others. */
 static int set_choice(struct brc_context *ctx, const struct brc_param *p, void *to,
                       const char *text, const char *place)
 {
@@ -235,6 +245,7 @@ static int set_flag(struct brc_context *ctx, const struct brc_param *p, void *to
              place, text);
 }
 
+/* Zeroed behind its end, so that structs of parameters can be compared as bytes. */
 static int set_text(struct brc_context *ctx, const struct brc_param *p, void *to, const char *text,
                     const char *place)
 {
@@ -331,6 +342,8 @@ static void triple_text(const struct brc_param *p, const void *from, char *buffe
     snprintf(buffer, size, "%s, %s, %s", part[0], part[1], part[2]);
 }
 
+/* What can be done with a value, by its kind: a new kind is one row here and its macros in
+ * params.h. */
 static const struct kind {
     size_t size; /* of the member */
     int (*set)(struct brc_context *ctx, const struct brc_param *p, void *to, const char *text,
@@ -370,13 +383,16 @@ const char *brc_params_text(const struct brc_param *p, const void *values, char 
 
 /* ---- lists --------------------------------------------------------------------------------- */
 
-/* "file.yaml:12: vgcm.e_bar" */
+/* "file.yaml:12: vgcm.e_bar": how every message about a value begins. Parts are cut rather than the
+ * end, which has the key. */
 static void make_place(char place[PLACE_SIZE], const char *where, const char *section,
                        const char *key)
 {
     snprintf(place, PLACE_SIZE, "%.200s: %.50s%s%.60s", where, section, *section ? "." : "", key);
 }
 
+/* Defaults go through the same reader as values: they are texts with units, and one that is out of
+ * its range is found by the first test. */
 int brc_params_defaults(struct brc_context *ctx, struct brc_param_list list, void *values)
 {
     char place[PLACE_SIZE];
@@ -417,6 +433,9 @@ static void add_range(struct brc_context *ctx, const struct brc_param *p)
                  is_auto(p) ? ", or " BRC_AUTO : "");
 }
 
+/* An unknown key is an error and never passed over: a slip in a name would leave the default in
+ * use. The message lists all keys, with the nearest, or else the one whose meaning has the words.
+ */
 int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
                    const char *section, const char *key, const char *text, const char *where)
 {

@@ -59,6 +59,8 @@ enum brc_param_flags {
     BRC_PARAM_FILE = 4        /* TEXT: a file; what counts for a state is what it holds */
 };
 
+/* A list with the size of the struct that it describes. Passed by value: it is three words, and
+ * lists that are changed for one use (calib/target.c) need no owner. */
 struct brc_param_list {
     const struct brc_param *params;
     int n;
@@ -118,24 +120,31 @@ static inline const char *brc_unit_blank(const char *unit)
 
 /* Fills a parameter struct with the defaults; keys without a default are left zero. */
 int brc_params_defaults(struct brc_context *ctx, struct brc_param_list list, void *values);
-/* Sets one key from text ("48.8 GPa"); where names the place for the message ("file.yaml:12"). */
+/* Sets one key from text ("48.8 GPa"); where names the place for the message ("file.yaml:12").
+ * BRC_ERR_INPUT for what a user can mend, with the place, the key and what is allowed; the struct
+ * is then as it was. */
 int brc_params_set(struct brc_context *ctx, struct brc_param_list list, void *values,
                    const char *section, const char *key, const char *text, const char *where);
-/* Text of a value, in the unit of its default where it has one; returns buffer. */
+/* Text of a value, in the unit of its default where it has one, with as many digits as read back to
+ * the same bits; of a choice its name. Returns buffer; a text that is too long for it is cut. */
 const char *brc_params_text(const struct brc_param *p, const void *values, char *buffer,
                             size_t size);
-/* Value of a quantity text ("48.8 GPa") in the SI unit given. */
+/* Value of a quantity text ("48.8 GPa") in the SI unit given; "1" is a pure number, which has no
+ * unit. Powers of ten between the two units cost no digit. */
 int brc_params_quantity(struct brc_context *ctx, const char *text, const char *unit, double *value,
                         const char *where);
-/* The param of this key, NULL when there is none. */
+/* The param of this key, NULL when there is none. Older names are not found by it: who reads a case
+ * asks brc_params_renamed after it, all others have the present names. */
 const struct brc_param *brc_params_find(struct brc_param_list list, const char *key);
 /* The param that had this key as its name before, NULL when there is none. */
 const struct brc_param *brc_params_renamed(struct brc_param_list list, const char *key);
 /* "; did you mean 'key'?" for the nearest key, or ""; returns hint. */
 const char *brc_params_hint(struct brc_param_list list, const char *key, char hint[BRC_HINT_SIZE]);
-/* The param whose meaning has most of the words of the key, NULL when it has none of 4 letters. */
+/* The param whose meaning has most of the words of the key, NULL when it has none of 4 letters:
+ * youngs_modulus finds e_bar, "contact modulus". */
 const struct brc_param *brc_params_meant(struct brc_param_list list, const char *key);
-/* Reference table: key, default, allowed, unit, meaning. */
+/* Reference table: key, default, allowed, unit, meaning, and where the key applies. Columns are as
+ * wide as their longest text. */
 void brc_params_print(FILE *out, const char *title, struct brc_param_list list);
 
 #endif

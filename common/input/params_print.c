@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference of a parameter list, as `breccia params` prints it. */
+/* The reference of a parameter list, as `breccia params` prints it, docs and completion read it.
+ * Declarations are all it knows: no value of a case is shown here. */
 #include "common/input/params.h"
 
 #include <string.h>
@@ -19,6 +20,7 @@ static void make_cells(const struct brc_param *p, const char *cell[N_CELLS])
 
 void brc_params_print(FILE *out, const char *title, struct brc_param_list list)
 {
+    /* widths begin with those of the headings */
     int w[N_CELLS] = {3, 7, 7, 4}; /* of the headings */
     const char *cell[N_CELLS];
     for (int i = 0; i < list.n; i++) {

@@ -13,7 +13,8 @@
 /* Lives until the program ends: reading the data base takes longer than reading a case. */
 static ut_system *unit_system;
 
-/* Reads the unit data base once; degrees get the short name that rock mechanics uses. */
+/* Reads the unit data base once; degrees get the short name that rock mechanics uses. Messages of
+ * the library itself are off: they go to standard error, without the place in the case. */
 static int system_open(struct brc_context *ctx)
 {
     if (unit_system)
@@ -45,6 +46,7 @@ static bool has_stray_number(const char *text)
     return strchr(text, '@') != NULL;
 }
 
+/* UDUNITS has no word for the unit of a pure number, so that "1" is taken out before. */
 static ut_unit *unit_parse(const char *text)
 {
     if (strcmp(text, "1") == 0)
@@ -57,8 +59,7 @@ static bool is_same_dimension(const ut_unit *a, const ut_unit *b)
 {
     ut_unit *ratio = ut_divide(a, b);
     bool same = ratio && ut_is_dimensionless(ratio) && ut_are_convertible(a, b);
-    if (ratio)
-        ut_free(ratio);
+    ut_free(ratio);
     return same;
 }
 
@@ -76,7 +77,8 @@ static bool is_angle(const ut_unit *unit)
     return strstr(definition(unit, text), "rad") != NULL;
 }
 
-/* False when the conversion is more than a factor. */
+/* False when the conversion is more than a factor: of degC the zero is elsewhere, of a decibel the
+ * factor depends on the value. */
 static bool get_factor(ut_unit *from, ut_unit *to, double *factor)
 {
     cv_converter *converter = ut_get_converter(from, to);
@@ -88,6 +90,8 @@ static bool get_factor(ut_unit *from, ut_unit *to, double *factor)
     return is_linear && isfinite(*factor) && *factor > 0;
 }
 
+/* The dimension is checked before the factor: of a wrong unit one wants to hear what it is, not
+ * that it cannot be converted. */
 static int factor_between(struct brc_context *ctx, ut_unit *a, ut_unit *b, const char *from,
                           const char *to, const char *where, double *factor)
 {
@@ -120,8 +124,7 @@ int brc_units_factor(struct brc_context *ctx, const char *from, const char *to, 
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%s: '%s' is declared as a unit but is none", where, to);
     ut_unit *a = unit_parse(from);
     int code = factor_between(ctx, a, b, from, to, where, factor);
-    if (a)
-        ut_free(a);
+    ut_free(a);
     ut_free(b);
     return code;
 }

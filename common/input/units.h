@@ -8,7 +8,9 @@
 #include "common/base/error.h"
 
 /* How many `to` one `from` is (1e9 for GPa in Pa). Another dimension is an error that names `to`;
- * so is a reciprocal (s for 1/s). where is the place that starts the message. */
+ * so is a reciprocal (s for 1/s), and a pure number for an angle. where is the place that starts
+ * the message. An unknown `to` is BRC_ERR_INTERNAL: it comes from a declaration, not from a user.
+ */
 int brc_units_factor(struct brc_context *ctx, const char *from, const char *to, const char *where,
                      double *factor);
 

@@ -34,6 +34,8 @@ static size_t make_mark(const struct brc_checksum_kind *kind, char mark[MARK_SIZ
     return (size_t)snprintf(mark, MARK_SIZE, "breccia %s, format ", kind->name);
 }
 
+/* Filled up with line breaks: `head` shows a text and then stops, and the last byte is as much
+ * compared as the first. */
 static void print_header(const struct brc_checksum_kind *kind, const struct header *s,
                          char text[BRC_CHECKSUM_SIZE])
 {
@@ -48,7 +50,8 @@ static void print_header(const struct brc_checksum_kind *kind, const struct head
     text[n] = '\n';
 }
 
-/* Size of a file and hash of all behind the header. */
+/* Size of a file and hash of all behind the header, read in blocks: the file may be larger than
+ * what memory is left beside a simulation. */
 static int measure(struct brc_context *ctx, const char *path, FILE *file, struct header *s)
 {
     char block[BLOCK_SIZE];
@@ -75,6 +78,8 @@ void brc_checksum_make(char header[BRC_CHECKSUM_SIZE], const struct brc_checksum
     print_header(kind, &s, header);
 }
 
+/* From what is told apart at a glance to what takes reading all: kind, format, size, content. Each
+ * has a message of its own, since what to do differs. */
 static int check_file(struct brc_context *ctx, const char *path, FILE *file, size_t size,
                       const struct brc_checksum_kind *kind)
 {
@@ -122,6 +127,7 @@ int brc_checksum_check(struct brc_context *ctx, const char *path,
     return code;
 }
 
+/* A file that cannot be opened has no header: who needs to know why opens it himself. */
 bool brc_checksum_is_there(const char *path, const struct brc_checksum_kind *kind)
 {
     char text[MARK_SIZE], mark[MARK_SIZE];

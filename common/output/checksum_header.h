@@ -18,12 +18,13 @@ struct brc_checksum_kind {
 };
 extern const struct brc_checksum_kind brc_checksum_state, brc_checksum_frame;
 
-/* The header to stand before n bytes. */
+/* The header to stand before n bytes. Equal bytes have equal headers. */
 void brc_checksum_make(char header[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,
                        const void *bytes, size_t n);
 /* The file begins with a header of this kind. */
 bool brc_checksum_is_there(const char *path, const struct brc_checksum_kind *kind);
-/* Fails unless the file is there, of this kind and format, and as it was when it was written. */
+/* Fails unless the file is there, of this kind and format, and as it was when it was written. Reads
+ * the whole file: the price of a library that crashes on what is damaged. */
 int brc_checksum_check(struct brc_context *ctx, const char *path,
                        const struct brc_checksum_kind *kind);
 

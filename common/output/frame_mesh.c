@@ -21,17 +21,6 @@ static const struct brc_field bond_fields[] = {BRC_BOND_CELL_FIELDS(BRC_FIELD, B
 static const struct brc_field contact_fields[] = {BRC_CONTACT_CELL_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
-static void start(struct brc_frame_mesh *f)
-{
-    const struct brc_fieldset grains = BRC_FIELDSET(grain_fields, struct brc_grain_cells);
-    const struct brc_fieldset bonds = BRC_FIELDSET(bond_fields, struct brc_bond_cells);
-    const struct brc_fieldset contacts = BRC_FIELDSET(contact_fields, struct brc_contact_cells);
-    memset(f, 0, sizeof *f);
-    brc_mesh_init(&f->grains, BRC_MESH_POLYGONS, "grains", grains, &f->grain_cells);
-    brc_mesh_init(&f->bonds, BRC_MESH_POLYGONS, "bonds", bonds, &f->bond_cells);
-    brc_mesh_init(&f->contacts, BRC_MESH_LINES, "contacts", contacts, &f->contact_cells);
-}
-
 void brc_frame_mesh_free(struct brc_frame_mesh *f)
 {
     brc_mesh_free(&f->grains);
@@ -81,6 +70,7 @@ static int grain_shapes(struct brc_context *ctx, const struct brc_sim *sim, stru
     return code;
 }
 
+/* Fragments are found anew for each frame: nothing else needs them while a run goes on. */
 static int make_grains(struct brc_context *ctx, const struct brc_sim *sim, struct brc_frame_mesh *f)
 {
     const struct brc_facets *s = &sim->specimen->facets;
@@ -174,6 +164,8 @@ static void add_contact_state(const struct brc_sim *sim, const int64_t *mesh_cel
     }
 }
 
+/* Facets below the specimen's area limit (is_contact) close their cells and were never bonded: they
+ * are no bonds here either. */
 static int bond_shapes(struct brc_context *ctx, const struct brc_sim *sim, int64_t *mesh_cell,
                        struct brc_mesh *m)
 {
@@ -217,8 +209,8 @@ static int make_bonds(struct brc_context *ctx, const struct brc_sim *sim, struct
 
 /* ---- contacts ------------------------------------------------------------------------------ */
 
-/* Ends of the line of a contact: the centres, or the grain's centre and the point
- * of the platen straight before it: a platen's body lies behind it, anywhere. */
+/* Ends of the line of a contact: the centres, or the grain's centre and the point of the platen
+ * straight before it: a platen's body lies behind it, anywhere. */
 static void line_ends(const struct brc_sim *sim, const struct brc_contacts *c, size_t k,
                       bool is_platen, double a[3], double b[3])
 {
@@ -234,6 +226,7 @@ static void line_ends(const struct brc_sim *sim, const struct brc_contacts *c, s
     brc_axpy(b, -brc_dot(away, n), n);
 }
 
+/* A row at a time: how many contacts carry a force is known only when all have been seen. */
 static int add_contacts(struct brc_context *ctx, const struct brc_sim *sim,
                         const struct brc_contacts *c, bool is_platen, struct brc_frame_mesh *f)
 {
@@ -263,10 +256,17 @@ static int add_contacts(struct brc_context *ctx, const struct brc_sim *sim,
     return 0;
 }
 
+/* After a failure the meshes hold what was made so far, for brc_frame_mesh_free. */
 int brc_frame_mesh_make(struct brc_context *ctx, const struct brc_sim *sim,
                         struct brc_frame_mesh *f)
 {
-    start(f);
+    const struct brc_fieldset grains = BRC_FIELDSET(grain_fields, struct brc_grain_cells);
+    const struct brc_fieldset bonds = BRC_FIELDSET(bond_fields, struct brc_bond_cells);
+    const struct brc_fieldset contacts = BRC_FIELDSET(contact_fields, struct brc_contact_cells);
+    memset(f, 0, sizeof *f);
+    brc_mesh_init(&f->grains, BRC_MESH_POLYGONS, "grains", grains, &f->grain_cells);
+    brc_mesh_init(&f->bonds, BRC_MESH_POLYGONS, "bonds", bonds, &f->bond_cells);
+    brc_mesh_init(&f->contacts, BRC_MESH_LINES, "contacts", contacts, &f->contact_cells);
     BRC_TRY(make_grains(ctx, sim, f));
     BRC_TRY(make_bonds(ctx, sim, f));
     BRC_TRY(add_contacts(ctx, sim, &sim->pairs, false, f));

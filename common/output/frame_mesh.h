@@ -9,6 +9,8 @@
 #include "common/output/mesh.h"
 #include "common/engine/sim.h"
 
+/* Values of the polygons of grains. Those of the whole grain stand in each of its polygons:
+ * ParaView shows values by cell. */
 #define BRC_GRAIN_CELL_FIELDS(SCALAR, VECTOR)                                                \
     SCALAR(int32_t, grain, BRC_STATE, "1", "grain that the polygon belongs to")              \
     SCALAR(int32_t, facet, BRC_STATE, "1", "facet of the specimen")                          \
@@ -19,6 +21,8 @@
     VECTOR(double, velocity, 3, BRC_STATE, "m s-1", "of the grain's centre")                 \
     VECTOR(double, spin, 3, BRC_STATE, "rad s-1", "angular velocity of the grain")
 
+/* Values of the facets between grains that were bonded, intact and broken alike: what broke when,
+ * and how far its sides are apart now. */
 #define BRC_BOND_CELL_FIELDS(SCALAR, VECTOR)                                               \
     SCALAR(int32_t, facet, BRC_STATE, "1", "facet of the specimen")                        \
     SCALAR(int32_t, a, BRC_STATE, "1", "grain with the lower number")                      \
@@ -34,6 +38,7 @@
     VECTOR(double, opening, 3, BRC_STATE, "m", "of b's side against a's, at the centroid") \
     VECTOR(double, force, 3, BRC_STATE, "N", "force on b")
 
+/* Values of the lines between bodies that push or pull: chains of forces. */
 #define BRC_CONTACT_CELL_FIELDS(SCALAR, VECTOR)                                                  \
     SCALAR(int32_t, a, BRC_STATE, "1", "grain with the lower number")                            \
     SCALAR(int32_t, b, BRC_STATE, "1", "grain with the higher number, or body of the platen")    \

@@ -51,6 +51,7 @@ void brc_frames_free(struct brc_frames *f)
     brc_table_free(&f->table);
 }
 
+/* By any of the three keys; the two with an interval win over the number, see choose. */
 bool brc_frames_are_on(const struct brc_output_params *p)
 {
     return p->frames > 0 || p->frame_strain > 0 || p->frame_steps > 0;
@@ -58,7 +59,8 @@ bool brc_frames_are_on(const struct brc_output_params *p)
 
 /* ---- the table ----------------------------------------------------------------------------- */
 
-/* The force at a row of the curve is its mean, which makes the peak. */
+/* The force at a row of the curve is its mean, which makes the peak; that of a single step swings
+ * about it. */
 static bool is_row(const struct brc_sim *sim)
 {
     const struct brc_curve *c = &sim->rig.curve;
@@ -85,7 +87,8 @@ static int add_row(struct brc_context *ctx, struct brc_frames *f, const struct b
     return 0;
 }
 
-/* Takes a role from a row, and the row away when it has none left. */
+/* Takes a role from a row, and the row away when it has none left. Its file goes with the next
+ * save: until then the saved table still names it. */
 static int drop_role(struct brc_context *ctx, struct brc_frames *f, size_t i, uint8_t role)
 {
     f->role[i] &= (uint8_t)~role;
@@ -110,6 +113,7 @@ static size_t row_before(const struct brc_frames *f, size_t i, uint8_t role)
 
 /* ---- which states are frames --------------------------------------------------------------- */
 
+/* Change as a part of all that has happened so far; 0 while nothing has. */
 static double part(double from, double to, double all)
 {
     return all > 0 ? fabs(to - from) / all : 0;
@@ -163,7 +167,8 @@ static bool has_passed(double from, double to, double every)
     return floor(to / every + 1e-9) > floor(from / every + 1e-9);
 }
 
-/* The present state is a frame by what has happened since the last one; then it has a row. */
+/* The present state is a frame by what has happened since the last one; then it has a row. The
+ * first state always is. By number only rows of the curve are asked, as their forces are means. */
 static int choose(struct brc_context *ctx, struct brc_frames *f, const struct brc_output_params *p,
                   const struct brc_sim *sim, bool *is_taken)
 {
@@ -186,6 +191,8 @@ static int choose(struct brc_context *ctx, struct brc_frames *f, const struct br
     return *is_taken ? 0 : drop_role(ctx, f, f->table.n - 1, 0);
 }
 
+/* By the rig's own record of the peak, so that the frame, the strength and the curve are of one
+ * row. */
 static bool is_new_peak(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
@@ -207,6 +214,7 @@ static int move_peak(struct brc_context *ctx, struct brc_frames *f, const struct
 
 /* ---- files --------------------------------------------------------------------------------- */
 
+/* DIR/frames, or a file in it: a folder of their own, since there may be hundreds. */
 static int in_frames(struct brc_context *ctx, const char *dir, const char *name,
                      char path[BRC_PATH_SIZE])
 {
@@ -283,6 +291,8 @@ static int keep_peak(struct brc_context *ctx, struct brc_frames *f, const struct
     return f->peak ? brc_frame_mesh_make(ctx, sim, f->peak) : BRC_ERR_MEMORY;
 }
 
+/* The peak moves also where the state is a frame anyhow: then its row has both roles, and is
+ * written at once. */
 int brc_frames_update(struct brc_context *ctx, struct brc_frames *f, const char *dir,
                       const struct brc_output_params *p, const struct brc_sim *sim,
                       const struct brc_h5_extra *extra)
@@ -299,6 +309,7 @@ int brc_frames_update(struct brc_context *ctx, struct brc_frames *f, const char 
     return is_peak && f->role[f->table.n - 1] == BRC_FRAME_PEAK ? keep_peak(ctx, f, sim) : 0;
 }
 
+/* Before a save, so that a run that is resumed from it finds the file of every row of the table. */
 int brc_frames_flush(struct brc_context *ctx, struct brc_frames *f, const char *dir,
                      const struct brc_h5_extra *extra)
 {
@@ -330,6 +341,7 @@ static bool is_ours(const char *name)
     return is_match;
 }
 
+/* Any is enough: it is named in the message that refuses the folder. */
 bool brc_frames_find(const char *dir, char *name, size_t size)
 {
     char path[BRC_PATH_SIZE];
@@ -345,7 +357,7 @@ bool brc_frames_find(const char *dir, char *name, size_t size)
     return is_found;
 }
 
-/* "grains_00012.hdf" of a step that the table has not. */
+/* Files of frames alone: the index is written anew with each of them and is never left over. */
 static bool is_left_over(const struct brc_frames *f, const char *name)
 {
     const char *digits = strchr(name, '_'), *end = strrchr(name, '.');

@@ -22,6 +22,7 @@
     SCALAR(int64_t, broken, BRC_STATE, "1", "events so far")                          \
     SCALAR(uint8_t, role, BRC_STATE, "1", "1 by what happens, 2 at the peak, 3 both; 0 the last")
 
+/* Why a row is in the table; one row may have both roles, and goes when it has lost all. */
 enum brc_frame_role { BRC_FRAME_SPACED = 1, BRC_FRAME_PEAK = 2 };
 
 /* The frames that there are. The table is saved with the state, so that a resumed run goes on with
@@ -35,7 +36,7 @@ struct brc_frames {
 
 void brc_frames_init(struct brc_frames *f);
 void brc_frames_free(struct brc_frames *f);
-/* Frames are asked for. */
+/* Frames are asked for, by any key. */
 bool brc_frames_are_on(const struct brc_output_params *p);
 /* The frames of the present state, if it is one of them: at most one a row of the curve, where they
  * are not asked for by steps. To be called at each step, and once more after a load. */

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/* noenhanced: in a title a_b and x^2 stand as they are. */
 void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int font)
 {
     fprintf(out,
@@ -25,7 +26,8 @@ void brc_gnuplot_head(FILE *out, const char *name, int width, int height, int fo
 
 /* Between double quotes gnuplot runs what stands in backquotes and fills in macros, between single
  * ones two quotes in a row end the text. Octal codes are read after all that, so everything but
- * plain characters is written as one. */
+ * plain characters is written as one. Titles come from cases of others: a title that runs a command
+ * would be a hole. */
 void brc_gnuplot_quoted(FILE *out, const char *text)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
@@ -36,7 +38,8 @@ void brc_gnuplot_quoted(FILE *out, const char *text)
     fputc('"', out);
 }
 
-/* Runs gnuplot in the folder; *status is its exit status, 127 when it is not installed. */
+/* Runs gnuplot in the folder; *status is its exit status, 127 when it is not installed. Not by
+ * system(): a shell would read the names once more, and SIGINT would be ignored while it waits. */
 static int run_gnuplot(struct brc_context *ctx, const char *dir, const char *script, int *status)
 {
     pid_t child = fork();
@@ -80,6 +83,8 @@ static int check_picture(struct brc_context *ctx, const char *dir, const char *n
     return 0;
 }
 
+/* A picture that fails does not end a run whose results are there: gnuplot's own messages are kept
+ * beside it. A full disk is another matter, see check_picture. */
 int brc_gnuplot_draw(struct brc_context *ctx, const char *dir, const char *const *picture, int n)
 {
     for (int i = 0; i < n; i++) {

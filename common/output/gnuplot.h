@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scripts of gnuplot: writing them, and running them where gnuplot is installed. */
+/* Scripts of gnuplot: writing them, and running them where gnuplot is installed. For the pictures
+ * of runs (plot.c) and of ladders (runs/converge_plot.c). The program links no library for drawing:
+ * scripts can be changed by the user and drawn again. */
 #ifndef BRC_GNUPLOT_H
 #define BRC_GNUPLOT_H
 

@@ -46,6 +46,7 @@ static hid_t file_type(enum brc_type type)
     return types[type];
 }
 
+/* Files are in memory while they are made: what fails then is the memory, not the disk. */
 int brc_h5_write_failed(const struct brc_h5_file *f, const char *what)
 {
     BRC_FAIL(f->ctx, BRC_ERR_MEMORY, "HDF5 cannot take up %s for %s; is the memory exhausted?",
@@ -88,7 +89,8 @@ int brc_h5_create(struct brc_context *ctx, const char *path, const struct brc_ch
     return id < 0 ? brc_h5_write_failed(f, "a new file") : 0;
 }
 
-/* The bytes of the file without its user block; allocated. */
+/* The bytes of the file without its user block; allocated. A second copy for a moment, so that
+ * saving takes twice the size of the file: the price of never letting HDF5 meet the disk. */
 static int copy_image(const struct brc_h5_file *f, char **image, size_t *n)
 {
     ssize_t size = H5Fflush(f->id, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(f->id, NULL, 0);
@@ -130,6 +132,7 @@ static int write_file(const struct brc_h5_file *f, const char *image, size_t n)
     return 0;
 }
 
+/* Closed in any case, written only when nothing failed: half a state is none. */
 int brc_h5_finish(struct brc_h5_file *f, int code)
 {
     char *image = NULL;
@@ -204,7 +207,7 @@ int brc_h5_put_text(const struct brc_h5_file *f, const char *path, const char *t
     return code;
 }
 
-/* An attribute of the object at path. */
+/* An attribute of the object at path; takes the space. */
 static int put_attribute(const struct brc_h5_file *f, const char *path, const char *name,
                          hid_t file_form, hid_t memory_form, hid_t space, const void *value)
 {
@@ -269,6 +272,7 @@ int brc_h5_get_text(const struct brc_h5_file *f, const char *path, char **text)
     return *text ? 0 : brc_h5_read_failed(f, path);
 }
 
+/* Of any integer type: HDF5 converts, and says so when it cannot. */
 int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *name, size_t *n)
 {
     uint64_t value = 0;
@@ -297,6 +301,7 @@ static void pack(hid_t how, const struct brc_h5_array *a)
     H5Pset_deflate(how, PACK_LEVEL);
 }
 
+/* What makes a field readable without this program: unit, meaning, and what its rows are. */
 static int put_labels(const struct brc_h5_file *f, const struct brc_h5_array *a)
 {
     char shape[256];
@@ -342,6 +347,8 @@ static int open_array(const struct brc_h5_file *f, const struct brc_h5_array *a,
     return brc_h5_read_failed(f, a->name);
 }
 
+/* The size of what a faulty file claims is compared with what is expected before any memory is
+ * taken for it. */
 int brc_h5_check_array(const struct brc_h5_file *f, const struct brc_h5_array *a)
 {
     hid_t id;
@@ -367,6 +374,7 @@ struct visit {
     void *user;
 };
 
+/* Names as other programs have them (numpy), since they are for users of those. */
 static const char *type_name(hid_t type)
 {
     size_t size = H5Tget_size(type);
@@ -379,7 +387,8 @@ static const char *type_name(hid_t type)
     return "other";
 }
 
-/* A text attribute of an open dataset, cut to the size; "" when there is none. */
+/* A text attribute of an open dataset, cut to the size; "" when there is none. Asked for by
+ * opening: whether there is one and whether it can be read is the same to the caller. */
 static void label_of(const struct brc_h5_file *f, hid_t id, const char *name, char *label,
                      size_t size)
 {
@@ -390,6 +399,8 @@ static void label_of(const struct brc_h5_file *f, hid_t id, const char *name, ch
     H5Aclose(attribute);
 }
 
+/* Also of datasets that this version would not write: files of other versions are to be looked at,
+ * not judged. Of a single number the value is read, whatever its type. */
 static void describe(const struct brc_h5_file *f, hid_t id, struct brc_h5_item *item)
 {
     hsize_t extent[2] = {1, 1};
@@ -427,6 +438,8 @@ static herr_t visit_link(hid_t where, const char *path, const H5L_info_t *info, 
     return is_dataset ? v->act(v->user, &item) : 0;
 }
 
+/* In the order of names, the one that every HDF5 file has; that of creation is kept only where it
+ * was asked for. */
 int brc_h5_visit(const struct brc_h5_file *f,
                  int (*act)(void *user, const struct brc_h5_item *item), void *user)
 {

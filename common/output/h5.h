@@ -7,7 +7,8 @@
 #include "common/base/table.h"
 #include "common/output/checksum_header.h"
 
-/* A file being written or read; the path is for messages and must live as long. */
+/* A file being written or read; ctx and path are for messages and must live as long. The handle is
+ * a plain number here, so that nobody else needs HDF5's headers. */
 struct brc_h5_file {
     struct brc_context *ctx;
     const char *path;
@@ -15,8 +16,8 @@ struct brc_h5_file {
     const struct brc_checksum_kind *header;
 };
 
-/* A dataset of shape (rows, width), or (rows) where is_flat says so. Texts may be NULL: then the
- * dataset has no such attribute. */
+/* A dataset of shape (rows, width), or (rows) where is_flat says so: VTK wants scalars flat, states
+ * keep one shape for all fields. Texts may be NULL: then the dataset has no such attribute. */
 struct brc_h5_array {
     const char *name; /* path in the file */
     enum brc_type type;
@@ -40,7 +41,7 @@ int brc_h5_open(struct brc_context *ctx, const char *path, const struct brc_chec
 void brc_h5_close(struct brc_h5_file *f);
 
 int brc_h5_put_group(const struct brc_h5_file *f, const char *path);
-/* A dataset that holds one text. */
+/* A dataset that holds one text, of its own length; "" takes one byte. */
 int brc_h5_put_text(const struct brc_h5_file *f, const char *path, const char *text);
 /* Attributes of a group or dataset. */
 int brc_h5_put_label(const struct brc_h5_file *f, const char *path, const char *name,
@@ -52,11 +53,13 @@ int brc_h5_put_pair(const struct brc_h5_file *f, const char *path, const char *n
 int brc_h5_put_array(const struct brc_h5_file *f, const struct brc_h5_array *a, const void *data,
                      bool is_packed);
 
-/* *text is allocated, to be freed by the caller. */
+/* *text is allocated, to be freed by the caller; NULL after a failure. A dataset of another kind is
+ * a failure as a missing one is. */
 int brc_h5_get_text(const struct brc_h5_file *f, const char *path, char **text);
 int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *name, size_t *n);
 /* Judges rows, width and type, before any memory is taken for them. */
 int brc_h5_check_array(const struct brc_h5_file *f, const struct brc_h5_array *a);
+/* Reads all rows into data, which has room for them; shape and type are checked once more. */
 int brc_h5_get_array(const struct brc_h5_file *f, const struct brc_h5_array *a, void *data);
 
 /* A dataset as brc_h5_visit meets it, in the order of names. */
@@ -73,7 +76,7 @@ struct brc_h5_item {
 int brc_h5_visit(const struct brc_h5_file *f,
                  int (*act)(void *user, const struct brc_h5_item *item), void *user);
 
-/* Messages: what could not be written or read. */
+/* Messages: what could not be written or read. They return the code. */
 int brc_h5_write_failed(const struct brc_h5_file *f, const char *what);
 int brc_h5_read_failed(const struct brc_h5_file *f, const char *what);
 

@@ -15,6 +15,8 @@
 
 enum { NAME_SIZE = 256, MAX_GROUPS = 64 };
 
+/* Groups are kept by name in the order of their first dataset; a file with more than MAX_GROUPS of
+ * them is not ours, and the rest is left out. */
 struct info {
     const struct brc_h5_file *f;
     FILE *out;
@@ -45,6 +47,7 @@ static size_t group_length(const struct brc_h5_item *item)
     return slash ? (size_t)(slash - item->path) : 0;
 }
 
+/* Directly in the group: what lies deeper belongs to a group of its own. */
 static bool is_of(const struct brc_h5_item *item, const char *group)
 {
     size_t length = group_length(item);
@@ -91,6 +94,7 @@ static int print_field(void *user, const struct brc_h5_item *item)
     return 0;
 }
 
+/* Last, since it is as long as the user has made it. */
 static int print_case(const struct info *i)
 {
     char *text;
@@ -105,6 +109,8 @@ static int print_case(const struct info *i)
     return 0;
 }
 
+/* That there is a text `program` is asked first: an HDF5 file behind a good header that is none of
+ * ours ends with a message, not with half a list. */
 static int print_all(const struct brc_h5_file *f, FILE *out)
 {
     struct info i = {.f = f, .out = out, .step = NAN};
@@ -122,6 +128,8 @@ static int print_all(const struct brc_h5_file *f, FILE *out)
     return print_case(&i);
 }
 
+/* The file is opened once before its kind is asked for: that it is missing, or a folder, is another
+ * message than that it is neither of the two. */
 int brc_info_print(struct brc_context *ctx, FILE *out, const char *path)
 {
     static const struct brc_checksum_kind *const kinds[] = {&brc_checksum_state,

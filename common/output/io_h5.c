@@ -14,6 +14,7 @@ enum { NAME_SIZE = 256 };
 
 /* ---- fields -------------------------------------------------------------------------------- */
 
+/* Tables know which fields hold nothing here; parts of scalars have only the flag. */
 static bool is_saved(const struct brc_state_part *part, int i)
 {
     return part->table ? brc_table_saves(part->table, i) : part->set.fields[i].flags & BRC_STATE;
@@ -53,8 +54,9 @@ static int move_field(const struct brc_h5_file *f, const struct brc_state_part *
     return code;
 }
 
-/* The group and all its BRC_STATE fields; an empty part makes its group, too. Its number of rows is
- * an attribute, since a part without fields has rows, too. */
+/* The group and all its BRC_STATE fields; an empty part makes its group, too, so that it is told
+ * from one that is missing. Its number of rows is an attribute, since a part without fields has
+ * rows, too. */
 static int write_part(const struct brc_h5_file *f, const struct brc_state_part *part)
 {
     BRC_TRY(brc_h5_put_group(f, part->path));
@@ -65,6 +67,9 @@ static int write_part(const struct brc_h5_file *f, const struct brc_state_part *
     return 0;
 }
 
+/* The number of rows comes first. Where the case decides it, another number means another case, and
+ * the message says so; where the run decided it (contacts, events), the table takes what the file
+ * has. */
 static int read_part(const struct brc_h5_file *f, struct brc_state_part *part)
 {
     char name[NAME_SIZE];
@@ -110,6 +115,7 @@ static void hash_text(uint64_t hash, char text[17])
     snprintf(text, 17, "%016" PRIx64, hash);
 }
 
+/* Texts of a group, in which another program finds where a state comes from without this one. */
 static int write_texts(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n)
 {
     char name[NAME_SIZE];
@@ -120,6 +126,8 @@ static int write_texts(const struct brc_h5_file *f, const struct brc_h5_text *te
     return 0;
 }
 
+/* The same three first for states and frames: who, which version, which compiler. Not the time, nor
+ * the machine: equal runs shall leave equal files. */
 int brc_h5_put_provenance(const struct brc_h5_file *f, const struct brc_h5_text *texts, int n)
 {
     static const struct brc_h5_text own[] = {
@@ -177,7 +185,8 @@ static int read_text(const struct brc_h5_file *f, const char *name, char **text)
     return brc_h5_get_text(f, full, text);
 }
 
-/* A text of the file is what it must be. */
+/* A text of the file is what it must be; the advice says what to do where it is not, as the cause
+ * differs with the text. */
 static int expect_text(const struct brc_h5_file *f, const char *name, const char *expected,
                        const char *advice)
 {
@@ -192,6 +201,9 @@ static int expect_text(const struct brc_h5_file *f, const char *name, const char
     return code;
 }
 
+/* The hash of the whole state comes last, over what is in memory by then: it also finds a field
+ * that one version saves and another does not know. Only then is anything derived from the state.
+ */
 static int read_all(const struct brc_h5_file *f, struct brc_sim *sim,
                     const struct brc_h5_extra *extra)
 {
@@ -236,6 +248,7 @@ int brc_h5_load_table(struct brc_context *ctx, const char *path, struct brc_stat
     return code;
 }
 
+/* Opened for a text alone: who resumes needs the kept case before there is a simulation to load. */
 int brc_h5_read_text(struct brc_context *ctx, const char *path, const char *name, char **text)
 {
     struct brc_h5_file f;

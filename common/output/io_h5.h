@@ -12,7 +12,8 @@ struct brc_h5_text {
     const char *name, *text;
 };
 
-/* What is saved beside the simulation: texts, and parts of the caller's own. */
+/* What is saved beside the simulation: texts, and parts of the caller's own (times of the run, the
+ * list of frames), which are loaded again but not part of the state's hash. */
 struct brc_h5_extra {
     const struct brc_h5_text *texts;
     int n_texts;

@@ -23,6 +23,8 @@ void brc_mesh_free(struct brc_mesh *m)
     memset(m, 0, sizeof *m);
 }
 
+/* Points, corners and cells grow each by itself; the table of values follows once, when all cells
+ * are there. */
 int brc_mesh_corner(struct brc_context *ctx, struct brc_mesh *m, const double x[3], int64_t *number)
 {
     if (*number < 0) {

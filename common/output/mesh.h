@@ -9,6 +9,7 @@
 
 enum brc_mesh_kind { BRC_MESH_LINES = 3, BRC_MESH_POLYGONS = 7 }; /* VTK's cell types */
 
+/* Owned and freed as a whole. Numbers of points are 64 bits wide, as VTK wants them in files. */
 struct brc_mesh {
     enum brc_mesh_kind kind;
     size_t n_points, cap_points, n_ids, cap_ids, n_cells, cap_ends;

@@ -21,6 +21,7 @@ enum { CELL_SIZE = 512 };
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
+/* Bytes above 0x7f pass: texts come from a case, which is UTF-8. */
 static void json_text(FILE *out, const char *text)
 {
     fputc('"', out);
@@ -35,6 +36,7 @@ static void json_text(FILE *out, const char *text)
     fputc('"', out);
 }
 
+/* JSON has no word for what is not a number. */
 static void json_number(FILE *out, double value)
 {
     if (isfinite(value))
@@ -57,6 +59,8 @@ static void json_number_entry(FILE *out, const char *name, double value)
     fputs(",\n", out);
 }
 
+/* Results in the order in which the test declares them, each with the reason where it was not
+ * measured: a missing value is to be told from one that the test never has. */
 static void json_results(FILE *out, const struct brc_summary *s)
 {
     fputs("  \"results\": {", out);
@@ -75,7 +79,7 @@ static void json_results(FILE *out, const struct brc_summary *s)
     fputs(s->n_results ? "\n  }\n" : "}\n", out);
 }
 
-/* How many frames there are, and the size of the last one. */
+/* How many frames there are, and the size of the last one: what a viewer has to take at once. */
 static void json_frames(FILE *out, const struct brc_summary *s)
 {
     fprintf(out, "  \"n_frames\": %zu,\n", s->n_frames);
@@ -88,6 +92,8 @@ static void json_frames(FILE *out, const struct brc_summary *s)
     fputs("\n  },\n", out);
 }
 
+/* Keys in reading order: what ran, how it ended, how large it was, what it took, whether it can be
+ * trusted, what it gave. What of them depends on the machine is only the times. */
 int brc_output_summary(struct brc_context *ctx, const char *dir, const char *name,
                        const struct brc_summary *s)
 {
@@ -124,6 +130,8 @@ int brc_output_summary(struct brc_context *ctx, const char *dir, const char *nam
     return brc_text_file_end(ctx, &file);
 }
 
+/* The larger of the two errors decides. What to change is part of the sentence: numerics.md says
+ * why each helps. */
 const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size)
 {
     bool is_drift = s->energy_drift > s->energy_residual;
@@ -152,6 +160,7 @@ const struct brc_result *brc_output_result(const struct brc_summary *s, const ch
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
 
+/* By RFC 4180, which readers of CSV agree on: quotes around, quotes within doubled. */
 void brc_output_cell(FILE *out, const char *text)
 {
     if (!strpbrk(text, ",\"\r\n")) {
@@ -188,6 +197,7 @@ static void csv_line(FILE *out, const struct brc_table *t, size_t row, const cha
     }
 }
 
+/* Two tables side by side are the curve's shared columns and those of its test. */
 void brc_output_table(FILE *out, const struct brc_table *t, const struct brc_table *beside)
 {
     for (size_t row = HEADER; row == HEADER || row < t->n; row++) {

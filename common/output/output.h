@@ -28,6 +28,7 @@
 
 enum brc_view { BRC_VIEW_AUTO, BRC_VIEW_SIDE, BRC_VIEW_TOP };
 
+/* All of these may change when a run resumes: nothing here has an effect on the run itself. */
 struct brc_output_params {
     BRC_PARAM_MEMBERS(BRC_OUTPUT_PARAMS)
 };
@@ -80,6 +81,7 @@ void brc_output_cell(FILE *out, const char *text);
  * "step [1],x_1 [m],x_2 [m]". beside: more columns of the same rows; NULL: none. */
 int brc_output_csv(struct brc_context *ctx, const char *dir, const char *name,
                    const struct brc_table *t, const struct brc_table *beside);
+/* The same to an open stream, whose errors are the caller's. */
 void brc_output_table(FILE *out, const struct brc_table *t, const struct brc_table *beside);
 
 #endif

@@ -26,6 +26,8 @@ static const double MM = 1e3; /* pictures are in mm */
 
 /* ---- broken area --------------------------------------------------------------------------- */
 
+/* Facets on the boundary cannot break, but at a platen that grips; they are no part of the whole.
+ */
 static double inner_area(const struct brc_facets *f)
 {
     double area = 0;
@@ -62,6 +64,9 @@ struct view {
     double to_eye[3], to_light[3];
 };
 
+/* From the side, or from above where what breaks is seen there, as in a disc that is loaded across
+ * its face; the case may say otherwise. The light comes from beside the eye, so that faces differ
+ * in shade. */
 static struct view choose_view(const struct brc_output_params *output,
                                const struct brc_rig_view *of_test)
 {
@@ -76,14 +81,16 @@ static struct view choose_view(const struct brc_output_params *output,
     return v;
 }
 
-/* Broken facets: their mode (-1: not drawn), how many there are and how many are drawn. */
+/* Broken facets: their mode (-1: not drawn), how many there are and how many are drawn. Counted by
+ * mode, since the legend is. */
 struct cracks {
     int8_t *mode; /* [n_facets] */
     size_t n_broken[BRC_N_MODES], n_drawn[BRC_N_MODES];
     double area[BRC_N_MODES]; /* m2, broken */
 };
 
-/* How far the two sides of an inner facet have moved against each other at its centroid. */
+/* How far the two sides of an inner facet have moved against each other at its centroid; slip
+ * counts as opening does. */
 static double facet_opening(const struct brc_sim *sim, size_t facet)
 {
     const struct brc_facets *f = &sim->specimen->facets;
@@ -95,7 +102,8 @@ static double facet_opening(const struct brc_sim *sim, size_t facet)
     return brc_norm(high);
 }
 
-/* The mode with most of the broken area, -1 while less than the part of the facet is broken. */
+/* The mode with most of the broken area, -1 while less than the part of the facet is broken. The
+ * small allowance is for sums of areas that make up the whole but for rounding. */
 static int8_t facet_mode(const double area[BRC_N_MODES], double least)
 {
     double sum = 0;
@@ -107,7 +115,9 @@ static int8_t facet_mode(const double area[BRC_N_MODES], double least)
     return (int8_t)(sum > 0 && sum >= least * (1 - 1e-9) ? most : -1);
 }
 
-/* Takes back the facets that have opened less than the given multiple of the mean. */
+/* Takes back the facets that have opened less than the given multiple of the mean: cracks that have
+ * hardly opened hide those along which the specimen has come apart. The legend tells how many were
+ * left out. */
 static void drop_closed(const struct brc_sim *sim, double multiple, struct cracks *c)
 {
     const struct brc_facets *f = &sim->specimen->facets;
@@ -131,6 +141,7 @@ static void drop_closed(const struct brc_sim *sim, double multiple, struct crack
     }
 }
 
+/* From the log of cracks: contacts of facets that broke whole may be gone. */
 static int classify(struct brc_context *ctx, const struct brc_sim *sim,
                     const struct brc_output_params *output, struct cracks *c)
 {
@@ -153,7 +164,8 @@ static int classify(struct brc_context *ctx, const struct brc_sim *sim,
     return 0;
 }
 
-/* Facets whose normals meet the light at like angles share one of N_SHADES colours. */
+/* Facets whose normals meet the light at like angles share one of N_SHADES colours. Few shades,
+ * since each is a data block of its own. */
 static int facet_shade(const struct view *v, const double normal[3])
 {
     int shade = (int)(fabs(brc_dot(normal, v->to_light)) * N_SHADES);
@@ -245,7 +257,8 @@ static double fit_scale(const struct view *v, const double extent[3])
     return fmin(0.9 * PANEL_HEIGHT / (high * unit), 0.70 * PANEL_WIDTH / (wide * unit));
 }
 
-/* Ranges and view; only the axes that the view shows at length have tics. */
+/* Ranges and view; only the axes that the view shows at length have tics, as those of the others
+ * would lie over each other. */
 static void put_axes(FILE *out, const struct brc_convex *domain, const struct view *v)
 {
     double extent[3];
@@ -271,7 +284,8 @@ static void put_axes(FILE *out, const struct brc_convex *domain, const struct vi
             v->tilt, v->turn, fit_scale(v, extent));
 }
 
-/* Lines under the picture; cracks.gp says where the panel is. */
+/* Lines under the picture; cracks.gp says where the panel is. Numbers are of all broken facets, and
+ * of those that are drawn where these are fewer. */
 static void put_legend(FILE *out, const struct cracks *c)
 {
     for (int mode = 0; mode < BRC_N_MODES; mode++) {
@@ -287,6 +301,7 @@ static void put_legend(FILE *out, const struct cracks *c)
     }
 }
 
+/* Behind, what is broken, in front: gnuplot draws in this order what it does not sort. */
 static void put_splot(FILE *out, bool used[BRC_N_MODES][N_SHADES])
 {
     fputs("splot $hidden with lines lc rgb '#b8b8b8' lw 1 dt 2 notitle", out);
@@ -331,12 +346,14 @@ int brc_plot_cracks(struct brc_context *ctx, const char *dir, const struct brc_s
 
 /* ---- scripts ------------------------------------------------------------------------------- */
 
+/* Runs beyond the fourth share colours: their labels tell them apart. */
 static const char *run_colour(int i)
 {
     static const char *const colour[] = {"#1b4f8f", "#d1570b", "#3a7d2c", "#7a3b93"};
     return colour[i % 4];
 }
 
+/* Names from the folder of the picture, in which gnuplot runs: the whole folder can be moved. */
 static void put_file(FILE *out, const struct brc_plot_runs *runs, int i, const char *name)
 {
     char path[BRC_PATH_SIZE];
@@ -381,7 +398,8 @@ static void put_stress_panel(FILE *out, const struct brc_plot_runs *runs)
     fputc('\n', out);
 }
 
-/* A mode that never occurs has no entry in the legend. */
+/* Which modes occur is asked by gnuplot, as it reads the files: a mode that never does has no entry
+ * in the legend. */
 static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
 {
     static const char *const dash[BRC_N_MODES] = {"1", "(10,4)", "(2,4)"};
@@ -410,6 +428,7 @@ static void put_broken_panel(FILE *out, const struct brc_plot_runs *runs)
     fputc('\n', out);
 }
 
+/* Stress to the left, what has broken to the right, over the same strain. */
 static int write_curves(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs)
 {
     struct brc_text_file file;
@@ -428,6 +447,8 @@ static int write_curves(struct brc_context *ctx, const char *dir, const struct b
     return brc_text_file_end(ctx, &file);
 }
 
+/* One panel a run, all of one height and view, with the script of each run's cracks loaded into it:
+ * what a run looks like is written once, by the run. */
 static int write_pictures(struct brc_context *ctx, const char *dir,
                           const struct brc_plot_runs *runs, int height)
 {
@@ -453,6 +474,7 @@ static int write_pictures(struct brc_context *ctx, const char *dir,
     return brc_text_file_end(ctx, &file);
 }
 
+/* Scripts first, both, so that they are there whatever gnuplot does. */
 int brc_plot_draw(struct brc_context *ctx, const char *dir, const struct brc_plot_runs *runs,
                   const struct brc_output_params *output)
 {

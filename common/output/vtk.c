@@ -22,6 +22,8 @@ static int put_list(const struct brc_h5_file *f, const char *name, enum brc_type
     return brc_h5_put_array(f, &a, data, true);
 }
 
+/* VTKHDF has its counts as arrays of one number, not as attributes: with several parts of a mesh
+ * each would have one. */
 static int put_number(const struct brc_h5_file *f, const char *name, size_t n)
 {
     const int64_t value = (int64_t)n;
@@ -51,7 +53,8 @@ static int put_table(const struct brc_h5_file *f, const char *group, const struc
     return 0;
 }
 
-/* Connectivity, and where each cell begins in it; types are all the same. */
+/* Connectivity, and where each cell begins in it; types are all the same. VTK wants one more offset
+ * than there are cells, also where there are none. */
 static int put_cells(const struct brc_h5_file *f, const struct brc_mesh *m)
 {
     int64_t *begin = brc_alloc(f->ctx, m->n_cells + 1, sizeof *begin);
@@ -72,6 +75,7 @@ static int put_cells(const struct brc_h5_file *f, const struct brc_mesh *m)
     return code;
 }
 
+/* Names, shapes and types are those of VTKHDF 1.0, by which alone VTK finds the parts of a mesh. */
 static int put_mesh(const struct brc_h5_file *f, const struct brc_mesh *m,
                     const struct brc_table *whole, size_t row)
 {
@@ -107,6 +111,7 @@ int brc_vtk_save(struct brc_context *ctx, const char *path, const struct brc_mes
     return brc_h5_finish(&f, code);
 }
 
+/* Named by step, not counted: frames come and go, and a counted name would change its content. */
 void brc_vtk_name(char *name, size_t size, const char *prefix, int64_t step)
 {
     snprintf(name, size, "%s_%05" PRId64 ".hdf", prefix, step);

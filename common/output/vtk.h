@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Meshes as VTKHDF files, version 1.0, which VTK from 9.1 and ParaView from 5.10 on read as they
- * are. */
+ * are. For frames.c; knows meshes and tables, no simulation. */
 #ifndef BRC_VTK_H
 #define BRC_VTK_H
 
