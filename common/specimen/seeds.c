@@ -94,7 +94,7 @@ static int take_rows(struct brc_context *ctx, const char *path, double domain_vo
     for (size_t i = 0; i < rows->n; i++) {
         const double *row = rows->value + i * width;
         brc_copy(out->x[i], row);
-        if (width == 3)
+        if (!out->radius)
             continue;
         out->radius[i] = row[3];
         if (row[3] < 0)
