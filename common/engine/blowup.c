@@ -161,10 +161,15 @@ int brc_blowup_number(const struct brc_sim *sim)
 
 int brc_blowup_energy(struct brc_sim *sim)
 {
-    const struct brc_ledger *l = brc_accounts_settle(sim);
+    const struct brc_ledger *l = &sim->ledger;
     const struct brc_bodies *b = &sim->bodies;
+    /* in each step, so first by what the ledger has at hand: gravity only adds to it */
+    if (!sim->run.ledger ||
+        fabs(l->kinetic) <= ENERGY_GROWTH * (fabs(l->start) + fabs(l->boundary)))
+        return 0;
+    brc_accounts_settle(sim);
     double given = fabs(l->start) + fabs(l->boundary) + fabs(l->gravity);
-    if (!sim->run.ledger || fabs(l->kinetic) <= ENERGY_GROWTH * given)
+    if (fabs(l->kinetic) <= ENERGY_GROWTH * given)
         return 0;
     /* seldom: exactly, body by body */
     double kinetic = 0, mass = 0, slow = REST * sim->skin / sim->dt;
