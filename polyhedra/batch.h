@@ -162,7 +162,7 @@ struct poly_batch {
     double tangent[POLY_CONTACTS + 1][36]; /* column after column */
     /* J, what contacts book in this step: summed up here first, so that what a grain's account gets
      * does not hang on which contacts make up a batch */
-    double energy[POLY_CONTACTS][BRC_N_ACCOUNTS];
+    _Alignas(64) double energy[POLY_CONTACTS][BRC_N_ACCOUNTS];
     struct poly_contact4 four[POLY_CONTACTS / BRC_LANES];
     struct poly_geometry4 known[POLY_TASKS / BRC_LANES];
     struct poly_task task[POLY_N_LISTS][POLY_TASKS + BRC_LANES];

@@ -198,8 +198,8 @@ static void book_contact(struct poly_batch *batch, int32_t i)
         e[BRC_ACCOUNT_VISCOUS] += g->work_viscous[lane];
     e[BRC_ACCOUNT_SHEAR] += g->stored[lane];
     e[BRC_ACCOUNT_FRICTION] += g->slid[lane] - g->stored[lane];
-    for (int k = 0; k < BRC_N_ACCOUNTS; k++)
-        account[k] += e[k];
+    for (int k = 0; k < BRC_N_ACCOUNTS; k += BRC_LANES)
+        brc_lanes_put(account + k, brc_lanes_at(account + k) + brc_lanes_at(e + k));
 }
 
 static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct poly_state *st,

@@ -6,41 +6,51 @@
 
 #include "polyhedra/poly.h"
 
+#include "common/engine/platen_surface.h"
+
+/* Heights s and outward normals of four vertices v over their platens; HUGE_VAL beyond a sharp
+ * edge. Four that are at one platen, as most are, ask its surface at once. */
+BRC_LANES_INLINE void poly_platen_heights(brc_lanes *s, brc_lanes out[3], const struct brc_sim *sim,
+                                          const brc_lanes v[3], const int32_t body[BRC_LANES])
+{
+    const double(*x)[3] = (const double(*)[3])sim->bodies.x;
+    for (int k = 0; k < BRC_LANES; k++) {
+        const struct brc_platen *platen = brc_sim_platen(sim, body[k]);
+        brc_lanes height, normal[3];
+        if (k > 0 && body[k] == body[k - 1])
+            continue;
+        brc_mask is_over = brc_platen_heights(platen, x[body[k]], v, &height, normal);
+        height = brc_lanes_pick(is_over, height, brc_lanes_all(HUGE_VAL));
+        for (int lane = k; lane < BRC_LANES; lane++) {
+            (*s)[lane] = height[lane];
+            for (int j = 0; j < 3; j++)
+                out[j][lane] = normal[j][lane];
+        }
+    }
+}
+
 /* Vertices by their numbers in st->global_vertices, at platens by their bodies; also of what would
  * touch if R were larger by skin. Returns where they touch. */
 BRC_LANES_INLINE brc_mask poly_platen_geometry(struct poly_geometry4 *t, const struct brc_sim *sim,
                                                const struct poly_state *st,
-                                               const size_t vertex[BRC_LANES],
+                                               const int32_t vertex[BRC_LANES],
                                                const int32_t body[BRC_LANES], double skin)
 {
-    double at[3][BRC_LANES], normal[3][BRC_LANES], height[BRC_LANES];
-    brc_lanes v[3], out[3];
-    for (int k = 0; k < BRC_LANES; k++) {
-        const struct brc_platen *platen = brc_sim_platen(sim, body[k]);
-        const double *x = st->global_vertices[vertex[k]];
-        /* The surface is asked for one point at a time, as the four may be at different platens. */
-        double n[3];
-        if (!brc_platen_height(platen, sim->bodies.x[body[k]], x, &height[k], n))
-            height[k] = HUGE_VAL; /* beyond a sharp edge */
-        for (int j = 0; j < 3; j++) {
-            at[j][k] = x[j];
-            normal[j][k] = n[j];
-        }
-    }
-    poly_set3(v, brc_lanes_at(at[0]), brc_lanes_at(at[1]), brc_lanes_at(at[2]));
-    poly_set3(out, brc_lanes_at(normal[0]), brc_lanes_at(normal[1]), brc_lanes_at(normal[2]));
-    brc_mask touches = poly_vertex_geometry(t, v, brc_lanes_at(height), out, brc_lanes_all(-1),
-                                            poly_params_of(sim)->radius + skin);
+    brc_lanes v[3], s, out[3];
+    brc_lanes_gather3(v, st->global_vertices, vertex);
+    poly_platen_heights(&s, out, sim, v, body);
+    brc_mask touches =
+        poly_vertex_geometry(t, v, s, out, brc_lanes_all(-1), poly_params_of(sim)->radius + skin);
     poly_hide_apart(t, touches);
     return touches;
 }
 
 /* Number of the vertex of a point of a platen contact. */
-static inline size_t poly_platen_vertex(const struct brc_sim *sim, const struct poly_state *st,
-                                        size_t row, size_t p)
+static inline int32_t poly_platen_vertex(const struct brc_sim *sim, const struct poly_state *st,
+                                         size_t row, size_t p)
 {
     const struct poly_points *points = sim->platens.point_columns;
-    return st->shapes.vertex_first[sim->platens.a[row]] + (size_t)points->i[p];
+    return (int32_t)st->shapes.vertex_first[sim->platens.a[row]] + points->i[p];
 }
 
 /* A point of a platen contact alone. */
@@ -48,7 +58,7 @@ static inline bool poly_platen_contact(struct poly_geometry *t, const struct brc
                                        const struct poly_state *st, size_t row, size_t p,
                                        double skin)
 {
-    size_t v = poly_platen_vertex(sim, st, row, p), vertex[BRC_LANES] = {v, v, v, v};
+    int32_t v = poly_platen_vertex(sim, st, row, p), vertex[BRC_LANES] = {v, v, v, v};
     int32_t b = sim->platens.b[row], body[BRC_LANES] = {b, b, b, b};
     struct poly_geometry4 all;
     brc_mask touches = poly_platen_geometry(&all, sim, st, vertex, body, skin);

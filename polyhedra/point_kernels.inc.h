@@ -136,8 +136,7 @@ BRC_LANES_INLINE void poly_platens_of_tasks(struct poly_geometry4 *t,
                                             const struct poly_batch *batch,
                                             const struct poly_task *task)
 {
-    size_t vertex[BRC_LANES];
-    int32_t platen[BRC_LANES];
+    int32_t vertex[BRC_LANES], platen[BRC_LANES];
     for (int k = 0; k < BRC_LANES; k++) {
         int32_t row = task[k].row < batch->n_contacts ? task[k].row : 0;
         vertex[k] = poly_platen_vertex(batch->sim, batch->st, (size_t)batch->row[row],
