@@ -169,19 +169,18 @@ static int act_export(struct brc_context *ctx, const struct options *o)
  * what is read. */
 static int act_params(struct brc_context *ctx, const struct options *o)
 {
-    const char *name;
-    struct brc_param_list list;
+    struct brc_case_section s;
     char hint[BRC_HINT_SIZE];
     struct brc_nearest nearest = {.text = o->operand};
     bool is_found = false;
-    for (int i = 0; brc_case_section(i, &name, &list); i++) {
+    for (int i = 0; brc_case_section(NULL, i, &s); i++) {
         if (o->operand)
-            brc_nearest_add(&nearest, name);
-        if (o->operand && strcmp(o->operand, name) != 0)
+            brc_nearest_add(&nearest, s.name);
+        if (o->operand && strcmp(o->operand, s.name) != 0)
             continue;
         if (is_found)
             putchar('\n');
-        brc_params_print(stdout, name, list);
+        brc_params_print(stdout, s.name, s.list);
         is_found = true;
     }
     if (!is_found)

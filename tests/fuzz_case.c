@@ -49,10 +49,11 @@ static int judge_section(struct brc_context *ctx, const struct brc_casefile *c, 
 static int judge(struct brc_context *ctx, const struct brc_casefile *c)
 {
     const char *names[64];
-    struct brc_param_list list;
+    struct brc_case_section s;
     size_t n = 0;
-    for (; n < 64 && brc_case_section((int)n, &names[n], &list); n++) {
-        int code = judge_section(ctx, c, names[n], list);
+    for (; n < 64 && brc_case_section(NULL, (int)n, &s); n++) {
+        names[n] = s.name;
+        int code = judge_section(ctx, c, s.name, s.list);
         if (code != 0)
             return code;
     }

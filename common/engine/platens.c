@@ -4,7 +4,6 @@
  * no test and no model: that a search stands here once is why a new test changes no model. */
 #include "common/engine/platens.h"
 
-#include "common/base/grow.h"
 #include "common/engine/platen_surface.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
@@ -47,22 +46,22 @@ static int compare(const void *p, const void *q)
 int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_t *n)
 {
     const struct brc_facets *f = &sim->specimen->facets;
-    struct brc_facing *list = brc_alloc(sim->ctx, 0, sizeof *list);
-    size_t cap = 0, used = 0;
-    for (size_t i = 0; list && i < f->n_facets; i++) {
-        for (int k = 0; list && k < sim->rig.n_platens && f->cell[i][1] < 0; k++) {
+    struct brc_facing *list;
+    size_t n_boundary = 0, used = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        n_boundary += f->cell[i][1] < 0;
+    /* as if each faced every platen: a few times what is needed, for the start of a run alone */
+    list = brc_alloc(sim->ctx, n_boundary * (size_t)sim->rig.n_platens, sizeof *list);
+    if (!list)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < f->n_facets; i++) {
+        for (int k = 0; k < sim->rig.n_platens && f->cell[i][1] < 0; k++) {
             const struct brc_platen *p = &sim->rig.platen[k];
             double h, normal[3];
             /* beyond a sharp edge, too: some of its points may lie within */
             brc_platen_height(p, sim->bodies.x[p->body], f->centroid[i], &h, normal);
             double cosine = -brc_dot(f->normal[i], normal);
-            if (!(cosine > FACING))
-                continue;
-            struct brc_facing *grown = brc_grown(sim->ctx, list, &cap, used + 1, sizeof *list);
-            if (!grown)
-                free(list);
-            list = grown;
-            if (list)
+            if (cosine > FACING)
                 list[used++] = (struct brc_facing){
                     .cell = f->cell[i][0],
                     .body = p->body,
@@ -71,8 +70,6 @@ int brc_platens_facing(const struct brc_sim *sim, struct brc_facing **out, size_
                              fabs(h) < ON_PLATEN * sim->rig.length[sim->rig.axis]};
         }
     }
-    if (!list)
-        return BRC_ERR_MEMORY;
     qsort(list, used, sizeof *list, compare);
     *out = list;
     *n = used;

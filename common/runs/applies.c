@@ -72,13 +72,14 @@ static int holds(struct brc_context *ctx, const struct brc_case *run_case, const
                  const char *key, bool *does)
 {
     char text[TEXT_SIZE];
-    struct brc_param_list list;
-    int i = brc_case_find_section(part->section, &list);
-    const struct brc_param *p = i < 0 ? NULL : brc_params_find(list, part->key);
+    struct brc_case_section s;
+    const struct brc_param *p = brc_case_find_section(run_case, part->section, &s)
+                                    ? brc_params_find(s.list, part->key)
+                                    : NULL;
     if (!p)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "'%s.%s' is not a key that another one can hang on",
                  part->section, part->key);
-    *does = is_one_of(value_text(p, brc_case_values(run_case, i), text), part, key);
+    *does = is_one_of(value_text(p, s.values, text), part, key);
     return 0;
 }
 
@@ -111,10 +112,10 @@ static bool is_overridden(const struct brc_case *run_case, const char *section, 
 {
     struct part part = {.next = clause};
     while (!part.is_last && read_part(part.next, section, &part)) {
-        struct brc_param_list list;
-        brc_case_find_section(part.section, &list);
+        struct brc_case_section s;
+        brc_case_find_section(NULL, part.section, &s);
         const struct brc_casefile_entry *e =
-            brc_casefile_find_entry(&run_case->file, part.section, part.key, list);
+            brc_casefile_find_entry(&run_case->file, part.section, part.key, s.list);
         if (e && e->is_override)
             return true;
     }
@@ -134,17 +135,18 @@ static bool mentions(const char *applies, const char *section, const struct part
 /* Keys of the section that apply by the same deciding key: "a, b". Whoever has taken the wrong key
  * finds the right one in the message. */
 static int list_others(struct brc_context *ctx, const struct brc_case *run_case,
-                       const char *section, struct brc_param_list list, const struct part *decider,
+                       const struct brc_case_section *s, const struct part *decider,
                        char text[TEXT_SIZE])
 {
     text[0] = '\0';
-    for (int i = 0; i < list.n; i++) {
+    for (int i = 0; i < s->list.n; i++) {
         const char *clause;
-        if (!mentions(list.params[i].applies, section, decider))
+        const struct brc_param *p = &s->list.params[i];
+        if (!mentions(p->applies, s->name, decider))
             continue;
-        BRC_TRY(brc_applies(ctx, run_case, section, &list.params[i], &clause));
+        BRC_TRY(brc_applies(ctx, run_case, s->name, p, &clause));
         if (!clause)
-            brc_names_add(text, TEXT_SIZE, list.params[i].key);
+            brc_names_add(text, TEXT_SIZE, p->key);
     }
     return 0;
 }
@@ -163,54 +165,51 @@ static const char *clause_text(const char *clause, const char *key, char text[TE
 
 /* The message names the clause that fails, what decides it and where that comes from, as the reader
  * may not have written it. */
-static int refuse(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
-                  struct brc_param_list list, const struct brc_casefile_entry *e,
+static int refuse(struct brc_context *ctx, const struct brc_case *run_case,
+                  const struct brc_case_section *s, const struct brc_casefile_entry *e,
                   const char *clause)
 {
     struct part part;
-    struct brc_param_list far;
+    struct brc_case_section far;
     char where[BRC_CASEFILE_WHERE_SIZE], text[TEXT_SIZE], others[TEXT_SIZE], said[TEXT_SIZE];
-    read_part(clause, section, &part);
-    int i = brc_case_find_section(part.section, &far);
-    const struct brc_param *p = brc_params_find(far, part.key);
+    read_part(clause, s->name, &part);
+    brc_case_find_section(run_case, part.section, &far);
+    const struct brc_param *p = brc_params_find(far.list, part.key);
     const struct brc_casefile_entry *given =
-        brc_casefile_find_entry(&run_case->file, part.section, part.key, far);
-    BRC_TRY(list_others(ctx, run_case, section, list, &part, others));
+        brc_casefile_find_entry(&run_case->file, part.section, part.key, far.list);
+    BRC_TRY(list_others(ctx, run_case, s, &part, others));
     BRC_FAIL(ctx, BRC_ERR_INPUT,
              "%s: %s.%s: applies only with %s, but %s.%s is %s%s; leave the key out, or change "
              "%s.%s%s%s",
-             brc_casefile_where(&run_case->file, e->line, e->is_override, where), section,
-             brc_casefile_key(e, list), clause_text(clause, e->key, said), part.section, part.key,
-             value_text(p, brc_case_values(run_case, i), text), given ? "" : " (its default)",
-             part.section, part.key, *others ? "; what applies now is " : "", others);
+             brc_casefile_where(&run_case->file, e->line, e->is_override, where), s->name,
+             brc_casefile_key(e, s->list), clause_text(clause, e->key, said), part.section,
+             part.key, value_text(p, far.values, text), given ? "" : " (its default)", part.section,
+             part.key, *others ? "; what applies now is " : "", others);
 }
 
 /* A key of the file that an override has made meaningless gets its default: the user has said that
  * this run is another one, and editing the file for it would be a nuisance. */
-static int check_key(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
-                     struct brc_param_list list, const struct brc_param *p, void *values)
+static int check_key(struct brc_context *ctx, const struct brc_case *run_case,
+                     const struct brc_case_section *s, const struct brc_param *p)
 {
     const char *clause;
     const struct brc_casefile_entry *e =
-        brc_casefile_find_entry(&run_case->file, section, p->key, list);
+        brc_casefile_find_entry(&run_case->file, s->name, p->key, s->list);
     if (!e)
         return 0;
-    BRC_TRY(brc_applies(ctx, run_case, section, p, &clause));
+    BRC_TRY(brc_applies(ctx, run_case, s->name, p, &clause));
     if (!clause)
         return 0;
-    if (e->is_override || !is_overridden(run_case, section, clause))
-        return refuse(ctx, run_case, section, list, e, clause);
-    return brc_params_set(ctx, list, values, section, p->key, p->default_text, "default");
+    if (e->is_override || !is_overridden(run_case, s->name, clause))
+        return refuse(ctx, run_case, s, e, clause);
+    return brc_params_set(ctx, s->list, s->values, s->name, p->key, p->default_text, "default");
 }
 
-int brc_applies_check(struct brc_context *ctx, const struct brc_case *run_case, int section,
-                      void *values)
+int brc_applies_check(struct brc_context *ctx, const struct brc_case *run_case,
+                      const struct brc_case_section *section)
 {
-    const char *name;
-    struct brc_param_list list;
-    brc_case_section(section, &name, &list);
-    for (int k = 0; k < list.n; k++)
-        if (list.params[k].applies)
-            BRC_TRY(check_key(ctx, run_case, name, list, &list.params[k], values));
+    for (int k = 0; k < section->list.n; k++)
+        if (section->list.params[k].applies)
+            BRC_TRY(check_key(ctx, run_case, section, &section->list.params[k]));
     return 0;
 }

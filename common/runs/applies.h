@@ -10,11 +10,11 @@
  * up to its end or a comma. An expression that cannot be read is an internal error. */
 int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                 const struct brc_param *p, const char **clause);
-/* Judges the keys that the case gives in section number i, whose values are these. One that does
+/* Judges the keys that the case gives in this section of it. One that does
  * not apply is an error that names those that do in its place; but where an override of --set is
  * what makes a key of the file meaningless, the key gets its default: the user has said that this
  * run is another one. */
-int brc_applies_check(struct brc_context *ctx, const struct brc_case *run_case, int section,
-                      void *values);
+int brc_applies_check(struct brc_context *ctx, const struct brc_case *run_case,
+                      const struct brc_case_section *section);
 
 #endif

@@ -26,18 +26,15 @@ static void set_name(struct brc_case *run_case, const char *path)
 /* A struct for each model and test, chosen or not: all their sections are read. */
 static int make_room(struct brc_context *ctx, struct brc_case *run_case)
 {
-    run_case->n_models = brc_registry_count();
-    if (run_case->n_models > BRC_CASE_MAX_MODELS)
-        BRC_FAIL(ctx, BRC_ERR_INTERNAL, "%d models are registered, %d are allowed",
-                 run_case->n_models, BRC_CASE_MAX_MODELS);
-    for (int i = 0; i < run_case->n_models; i++) {
-        run_case->model_params[i] = brc_alloc(ctx, 1, brc_registry_at(i)->params.owner_size);
-        if (!run_case->model_params[i])
-            return BRC_ERR_MEMORY;
-    }
-    for (int i = 0; i < brc_rigs_count(); i++) {
-        run_case->rig_params[i] = brc_alloc(ctx, 1, brc_rigs_at(i)->params.owner_size);
-        if (!run_case->rig_params[i])
+    void *const common[BRC_CASE_N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
+                                             &run_case->output};
+    struct brc_case_section s;
+    memcpy(run_case->values, common, sizeof common);
+    for (int i = BRC_CASE_N_COMMON; brc_case_section(NULL, i, &s); i++) {
+        if (i == BRC_CASE_MAX_SECTIONS)
+            BRC_FAIL(ctx, BRC_ERR_INTERNAL, "models and tests have more than %d sections", i);
+        run_case->values[i] = brc_alloc(ctx, 1, s.list.owner_size);
+        if (!run_case->values[i])
             return BRC_ERR_MEMORY;
     }
     return 0;
@@ -45,7 +42,8 @@ static int make_room(struct brc_context *ctx, struct brc_case *run_case)
 
 static struct brc_test test_of(const struct brc_case *run_case)
 {
-    return brc_rigs_test(&run_case->test, run_case->rig_params[run_case->test.kind]);
+    const char *name = brc_rigs_at(run_case->test.kind)->name;
+    return brc_rigs_test(&run_case->test, brc_case_values(run_case, name));
 }
 
 /* The polygon that stands for a circle is the test's choice where the case makes none. */
@@ -61,16 +59,15 @@ static void choose_sides(struct brc_case *run_case)
 static int check_indents(struct brc_context *ctx, const struct brc_case *run_case)
 {
     const struct brc_casefile *c = &run_case->file;
-    const char *section;
-    struct brc_param_list list;
-    for (int i = 0; brc_case_section(i, &section, &list); i++)
+    struct brc_case_section s;
+    for (int i = 0; brc_case_section(NULL, i, &s); i++)
         for (size_t k = 0; k < c->n_sections; k++) {
             const char *name = c->sections[k].name, *dot = strchr(name, '.');
-            if (dot && strcmp(dot + 1, section) == 0)
+            if (dot && strcmp(dot + 1, s.name) == 0)
                 BRC_FAIL(ctx, BRC_ERR_INPUT,
                          "%s:%d: %s is a section, but it is indented under %.*s; write it in the "
                          "first column",
-                         c->path, c->sections[k].line, section, (int)(dot - name), name);
+                         c->path, c->sections[k].line, s.name, (int)(dot - name), name);
         }
     for (size_t k = 0; k < c->n; k++) {
         const struct brc_casefile_entry *e = &c->entries[k];
@@ -86,15 +83,16 @@ static int check_indents(struct brc_context *ctx, const struct brc_case *run_cas
 static int check_sections(struct brc_context *ctx, struct brc_case *run_case)
 {
     const char *names[BRC_CASE_MAX_SECTIONS];
-    struct brc_param_list list;
-    int i = 0;
+    struct brc_case_section s;
+    int n = 0;
     BRC_TRY(check_indents(ctx, run_case));
-    for (; brc_case_section(i, &names[i], &list); i++)
-        BRC_TRY(brc_casefile_section(ctx, &run_case->file, names[i], list,
-                                     brc_case_section_values(run_case, i)));
-    BRC_TRY(brc_casefile_finish(ctx, &run_case->file, names, (size_t)i));
-    for (int k = 0; k < i; k++)
-        BRC_TRY(brc_applies_check(ctx, run_case, k, brc_case_section_values(run_case, k)));
+    for (; brc_case_section(run_case, n, &s); n++) {
+        names[n] = s.name;
+        BRC_TRY(brc_casefile_section(ctx, &run_case->file, s.name, s.list, s.values));
+    }
+    BRC_TRY(brc_casefile_finish(ctx, &run_case->file, names, (size_t)n));
+    for (int i = 0; brc_case_section(run_case, i, &s); i++)
+        BRC_TRY(brc_applies_check(ctx, run_case, &s));
     struct brc_test test = test_of(run_case);
     int code = brc_rig_check(ctx, &test);
     if (code != 0)
@@ -174,42 +172,39 @@ int brc_case_sim(struct brc_context *ctx, const struct brc_case *run_case,
                  struct brc_sim *sim)
 {
     struct brc_test test = test_of(run_case);
-    return brc_sim_create(ctx, sim, model, brc_case_params(run_case, model), specimen, &test,
+    return brc_sim_create(ctx, sim, model, brc_case_values(run_case, model->name), specimen, &test,
                           &run_case->run);
 }
 
 void brc_case_free(struct brc_case *run_case)
 {
-    for (int i = 0; i < run_case->n_models; i++)
-        free(run_case->model_params[i]);
-    for (int i = 0; i < BRC_MAX_RIGS; i++)
-        free(run_case->rig_params[i]);
+    for (int i = BRC_CASE_N_COMMON; i < BRC_CASE_MAX_SECTIONS; i++)
+        free(run_case->values[i]);
     brc_casefile_free(&run_case->file);
     memset(run_case, 0, sizeof *run_case);
 }
 
 /* ---- places in messages --------------------------------------------------------------------- */
 
-/* Whether text starts with "section.key" of the list; key gets the key. */
-static bool starts_with_key(const char *text, const char *section, struct brc_param_list list,
+/* Whether text starts with "section.key"; key gets the key. */
+static bool starts_with_key(const char *text, const struct brc_case_section *s,
                             char key[BRC_CASEFILE_KEY_SIZE])
 {
-    size_t n = strlen(section);
-    if (strncmp(text, section, n) != 0 || text[n] != '.')
+    size_t n = strlen(s->name);
+    if (strncmp(text, s->name, n) != 0 || text[n] != '.')
         return false;
     size_t length = strspn(text + n + 1, "abcdefghijklmnopqrstuvwxyz0123456789_");
     snprintf(key, BRC_CASEFILE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
-    return brc_params_find(list, key) != NULL;
+    return brc_params_find(s->list, key) != NULL;
 }
 
 /* The first section.key in text, at the beginning of a word; false when there is none. */
-static bool find_key(const char *text, const char **section, struct brc_param_list *list,
-                     char key[BRC_CASEFILE_KEY_SIZE])
+static bool find_key(const char *text, struct brc_case_section *s, char key[BRC_CASEFILE_KEY_SIZE])
 {
     for (const char *c = text; *c; c++) {
         bool is_start = c == text || strchr(" '(", c[-1]);
-        for (int i = 0; is_start && brc_case_section(i, section, list); i++)
-            if (starts_with_key(c, *section, *list, key))
+        for (int i = 0; is_start && brc_case_section(NULL, i, s); i++)
+            if (starts_with_key(c, s, key))
                 return true;
     }
     return false;
@@ -220,15 +215,14 @@ static bool find_key(const char *text, const char **section, struct brc_param_li
 void brc_case_locate(struct brc_context *ctx, const struct brc_case *run_case)
 {
     char key[BRC_CASEFILE_KEY_SIZE], where[BRC_CASEFILE_WHERE_SIZE];
-    const char *section;
-    struct brc_param_list list;
+    struct brc_case_section section;
     bool is_input =
         ctx->code == BRC_ERR_INPUT || ctx->code == BRC_ERR_GEOMETRY || ctx->code == BRC_ERR_IO;
-    if (!is_input || !find_key(ctx->message, &section, &list, key))
+    if (!is_input || !find_key(ctx->message, &section, key))
         return;
     const struct brc_casefile_entry *e =
-        brc_casefile_find_entry(&run_case->file, section, key, list);
-    const struct brc_casefile_place *s = brc_casefile_find_section(&run_case->file, section);
+        brc_casefile_find_entry(&run_case->file, section.name, key, section.list);
+    const struct brc_casefile_place *s = brc_casefile_find_section(&run_case->file, section.name);
     brc_casefile_where(&run_case->file, e ? e->line : s ? s->line : 0, e && e->is_override, where);
     size_t n = strlen(where), left = sizeof ctx->message - n - 3;
     memmove(ctx->message + n + 2, ctx->message, left);

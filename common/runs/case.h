@@ -10,7 +10,7 @@
 #include "common/output/output.h"
 #include "common/runs/case_sections.h"
 
-enum { BRC_CASE_MAX_MODELS = 32, BRC_CASE_MAX_SECTIONS = 4 + BRC_CASE_MAX_MODELS + BRC_MAX_RIGS };
+enum { BRC_CASE_N_COMMON = 4, BRC_CASE_MAX_SECTIONS = BRC_CASE_N_COMMON + 32 + BRC_MAX_RIGS };
 
 struct brc_case {
     struct brc_casefile file;
@@ -19,9 +19,9 @@ struct brc_case {
     struct brc_test_params test;
     struct brc_run_params run;
     struct brc_output_params output;
-    int n_models;                            /* registered */
-    void *model_params[BRC_CASE_MAX_MODELS]; /* one filled struct a registered model; owned */
-    void *rig_params[BRC_MAX_RIGS];          /* one a test, of its own section; owned */
+    /* One filled struct a section. The common ones are the members above, so a case must not be
+     * copied; those of models and tests are owned, and are known by their lists alone. */
+    void *values[BRC_CASE_MAX_SECTIONS];
 };
 
 /* Reads a case with n overrides "section.key=value". Files that the case names are looked up from

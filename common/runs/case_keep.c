@@ -97,12 +97,12 @@ static int keep_overrides(struct brc_context *ctx, const struct brc_casefile *fr
 {
     for (size_t i = 0; i < from->n; i++) {
         const struct brc_casefile_entry *e = &from->entries[i];
-        struct brc_param_list list;
-        if (brc_case_find_section(e->section, &list) < 0)
-            list = brc_casefile_param_list;
-        const char *key = brc_casefile_key(e, list);
-        if (e->is_override && brc_casefile_find_entry(from, e->section, key, list) == e)
-            BRC_TRY(brc_casefile_write(ctx, c, e->section, key, list, e->text));
+        struct brc_case_section s;
+        if (!brc_case_find_section(NULL, e->section, &s)) /* a key of the top level */
+            s.list = brc_casefile_param_list;
+        const char *key = brc_casefile_key(e, s.list);
+        if (e->is_override && brc_casefile_find_entry(from, e->section, key, s.list) == e)
+            BRC_TRY(brc_casefile_write(ctx, c, e->section, key, s.list, e->text));
     }
     return 0;
 }
@@ -112,13 +112,13 @@ static int keep_overrides(struct brc_context *ctx, const struct brc_casefile *fr
 static int drop_meaningless(struct brc_context *ctx, const struct brc_case *run_case,
                             struct brc_casefile *c)
 {
-    const char *section, *clause;
-    struct brc_param_list list;
-    for (int i = 0; brc_case_section(i, &section, &list); i++)
-        for (int k = 0; k < list.n; k++) {
-            BRC_TRY(brc_applies(ctx, run_case, section, &list.params[k], &clause));
+    const char *clause;
+    struct brc_case_section s;
+    for (int i = 0; brc_case_section(NULL, i, &s); i++)
+        for (int k = 0; k < s.list.n; k++) {
+            BRC_TRY(brc_applies(ctx, run_case, s.name, &s.list.params[k], &clause));
             if (clause)
-                BRC_TRY(brc_casefile_remove(ctx, c, section, list.params[k].key, list));
+                BRC_TRY(brc_casefile_remove(ctx, c, s.name, s.list.params[k].key, s.list));
         }
     return 0;
 }

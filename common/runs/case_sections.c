@@ -9,78 +9,47 @@
 
 #include <string.h>
 
-enum { N_COMMON = 4 };
-
-/* A section: four common ones, whose values lie in the case, then one a model, then those of tests
- * that have keys of their own. */
-struct section {
-    const char *name;
-    struct brc_param_list list;
-    size_t offset; /* of common values */
-    void *values;  /* of others; NULL without a case */
-};
-
-/* Sections in their order; the models' and tests' values are NULL without a case, for callers that
- * ask for names and lists alone. */
-static bool find_section(const struct brc_case *run_case, int i, struct section *s)
+/* Four common sections, then the models', then those of tests that have keys of their own. */
+bool brc_case_section(const struct brc_case *run_case, int i, struct brc_case_section *s)
 {
-    const struct section common[N_COMMON] = {
-        {"specimen", brc_specimen_param_list, offsetof(struct brc_case, specimen), NULL},
-        {"test", brc_test_param_list, offsetof(struct brc_case, test), NULL},
-        {"run", brc_run_param_list, offsetof(struct brc_case, run), NULL},
-        {"output", brc_output_param_list, offsetof(struct brc_case, output), NULL}};
-    int n_models = brc_registry_count(), left = i - N_COMMON - n_models;
-    if (i < N_COMMON) {
+    const struct brc_case_section common[BRC_CASE_N_COMMON] = {
+        {"specimen", brc_specimen_param_list, NULL},
+        {"test", brc_test_param_list, NULL},
+        {"run", brc_run_param_list, NULL},
+        {"output", brc_output_param_list, NULL}};
+    int model = i - BRC_CASE_N_COMMON, left = model - brc_registry_count(), rig = 0;
+    if (i < BRC_CASE_N_COMMON) {
         *s = common[i];
-        return true;
+    } else if (left < 0) {
+        const struct brc_model *m = brc_registry_at(model);
+        *s = (struct brc_case_section){m->name, m->params, NULL};
+    } else {
+        for (; rig < brc_rigs_count(); rig++)
+            if (brc_rigs_at(rig)->params.n > 0 && left-- == 0)
+                break;
+        if (rig == brc_rigs_count())
+            return false;
+        *s = (struct brc_case_section){brc_rigs_at(rig)->name, brc_rigs_at(rig)->params, NULL};
     }
-    if (left < 0) {
-        const struct brc_model *model = brc_registry_at(i - N_COMMON);
-        void *values = run_case ? run_case->model_params[i - N_COMMON] : NULL;
-        *s = (struct section){model->name, model->params, 0, values};
-        return true;
-    }
-    for (int k = 0; k < brc_rigs_count(); k++) {
-        const struct brc_rig_type *rig = brc_rigs_at(k);
-        if (rig->params.n == 0 || left-- > 0)
-            continue;
-        *s = (struct section){rig->name, rig->params, 0, run_case ? run_case->rig_params[k] : NULL};
-        return true;
-    }
-    return false;
-}
-
-bool brc_case_section(int i, const char **name, struct brc_param_list *list)
-{
-    struct section s;
-    if (!find_section(NULL, i, &s))
-        return false;
-    *name = s.name;
-    *list = s.list;
+    s->values = run_case ? run_case->values[i] : NULL;
     return true;
 }
 
-void *brc_case_section_values(struct brc_case *run_case, int i)
+bool brc_case_find_section(const struct brc_case *run_case, const char *name,
+                           struct brc_case_section *s)
 {
-    struct section s = {0};
-    find_section(run_case, i, &s);
-    return i < N_COMMON ? (char *)run_case + s.offset : s.values;
+    for (int i = 0; brc_case_section(run_case, i, s); i++)
+        if (strcmp(s->name, name) == 0)
+            return true;
+    *s = (struct brc_case_section){.name = name};
+    return false;
 }
 
-const void *brc_case_values(const struct brc_case *run_case, int i)
+const void *brc_case_values(const struct brc_case *run_case, const char *section)
 {
-    struct section s = {0};
-    find_section(run_case, i, &s);
-    return i < N_COMMON ? (const char *)run_case + s.offset : s.values;
-}
-
-int brc_case_find_section(const char *name, struct brc_param_list *list)
-{
-    const char *section;
-    for (int i = 0; brc_case_section(i, &section, list); i++)
-        if (strcmp(section, name) == 0)
-            return i;
-    return -1;
+    struct brc_case_section s;
+    brc_case_find_section(run_case, section, &s);
+    return s.values;
 }
 
 int brc_case_model(struct brc_context *ctx, const char *name, const struct brc_model **model)
@@ -108,13 +77,4 @@ int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
             BRC_TRY(brc_case_model(ctx, run_case->file.models[i], &model[i]));
     }
     return 0;
-}
-
-/* By address: a model that is not registered (of a test) has no section. */
-const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model)
-{
-    for (int i = 0; i < run_case->n_models; i++)
-        if (brc_registry_at(i) == model)
-            return run_case->model_params[i];
-    return NULL;
 }

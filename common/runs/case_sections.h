@@ -10,14 +10,20 @@
 
 struct brc_case;
 
-/* Name and list of section number i, false past the last. Numbers are those of this build: they are
- * not saved. */
-bool brc_case_section(int i, const char **name, struct brc_param_list *list);
-/* The number of a section and its list; -1, and a list of no use, where there is none. */
-int brc_case_find_section(const char *name, struct brc_param_list *list);
-/* The filled parameters of section number i. */
-const void *brc_case_values(const struct brc_case *run_case, int i);
-void *brc_case_section_values(struct brc_case *run_case, int i);
+struct brc_case_section {
+    const char *name;
+    struct brc_param_list list;
+    void *values; /* the case's struct of the section; NULL where no case was given */
+};
+
+/* Section number i, false past the last. Numbers are those of this build: they are not saved. The
+ * case may be NULL, for callers that ask for names and lists alone. */
+bool brc_case_section(const struct brc_case *run_case, int i, struct brc_case_section *s);
+/* By name; false, and a section without a list, where there is none. */
+bool brc_case_find_section(const struct brc_case *run_case, const char *name,
+                           struct brc_case_section *s);
+/* The values of a section alone; NULL where there is none, as of a test without keys of its own. */
+const void *brc_case_values(const struct brc_case *run_case, const char *section);
 
 /* A registered model by name; an unknown one is an error that lists all. */
 int brc_case_model(struct brc_context *ctx, const char *name, const struct brc_model **model);
@@ -25,7 +31,5 @@ int brc_case_model(struct brc_context *ctx, const char *name, const struct brc_m
  * unknown name is an error that lists all, and so are more than cap. */
 int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_model **model, int cap, int *n);
-/* The filled parameters of a model. */
-const void *brc_case_params(const struct brc_case *run_case, const struct brc_model *model);
 
 #endif

@@ -50,11 +50,12 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
     if (text)
         text = add_section(ctx, text, "test", brc_test_param_list, &test);
     if (text)
-        text = add_section(ctx, text, rig->name, rig->params, run_case->rig_params[test.kind]);
+        text = add_section(ctx, text, rig->name, rig->params, brc_case_values(run_case, rig->name));
     if (text)
         text = add_section(ctx, text, "run", brc_run_param_list, &run_case->run);
     if (text)
-        text = add_section(ctx, text, model->name, model->params, brc_case_params(run_case, model));
+        text = add_section(ctx, text, model->name, model->params,
+                           brc_case_values(run_case, model->name));
     return text;
 }
 
@@ -62,14 +63,14 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
 static bool may_change(const char *line)
 {
     char section[BRC_CASEFILE_KEY_SIZE], key[BRC_CASEFILE_KEY_SIZE];
-    struct brc_param_list list;
+    struct brc_case_section s;
     size_t dot = strcspn(line, ". \n");
     if (line[dot] != '.')
         return false;
     snprintf(section, sizeof section, "%.*s", (int)dot, line);
     snprintf(key, sizeof key, "%.*s", (int)strcspn(line + dot + 1, " "), line + dot + 1);
     const struct brc_param *p =
-        brc_case_find_section(section, &list) < 0 ? NULL : brc_params_find(list, key);
+        brc_case_find_section(NULL, section, &s) ? brc_params_find(s.list, key) : NULL;
     return p && p->flags & BRC_PARAM_MAY_CHANGE;
 }
 

@@ -65,19 +65,19 @@ static void keys_of_another_kind_are_refused(void **state)
 static void every_key_is_judged(void **state)
 {
     struct brc_case run_case;
-    struct brc_param_list list;
-    const char *section, *clause;
+    struct brc_case_section s;
+    const char *clause;
     int n_refused = 0, n_taken = 0;
     (void)state;
     CHECK_OK(&ctx, brc_case_parse(&ctx, &run_case, "c.yaml", "breccia: 1\n"));
-    for (int i = 0; brc_case_section(i, &section, &list); i++)
-        for (int k = 0; k < list.n; k++) {
-            const struct brc_param *p = &list.params[k];
+    for (int i = 0; brc_case_section(NULL, i, &s); i++)
+        for (int k = 0; k < s.list.n; k++) {
+            const struct brc_param *p = &s.list.params[k];
             char text[512];
             if (!p->applies || !p->default_text)
                 continue;
-            CHECK_OK(&ctx, brc_applies(&ctx, &run_case, section, p, &clause));
-            snprintf(text, sizeof text, "breccia: 1\n%s: {%s: '%s'}\n", section, p->key,
+            CHECK_OK(&ctx, brc_applies(&ctx, &run_case, s.name, p, &clause));
+            snprintf(text, sizeof text, "breccia: 1\n%s: {%s: '%s'}\n", s.name, p->key,
                      p->default_text);
             if (clause)
                 bad(text, "applies only with");
