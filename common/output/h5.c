@@ -26,24 +26,15 @@ _Static_assert(sizeof(hid_t) == sizeof(int64_t), "h5.h keeps handles of HDF5 as 
  * which files in memory grow */
 enum { PACK_LEVEL = 4, PACK_ROWS = 1024, CHUNK_BYTES = 1 << 20, CORE_STEP = 1 << 20 };
 
-/* Not static: HDF5 knows its types only when it has started. */
-static hid_t memory_type(enum brc_type type)
+/* Little-endian on disk, whatever the machine. The table is not static: HDF5 knows its types only
+ * when it has started. */
+static hid_t type_of(enum brc_type type, bool is_on_disk)
 {
-    const hid_t types[] = {[BRC_F64] = H5T_NATIVE_DOUBLE,
-                           [BRC_I64] = H5T_NATIVE_INT64,
-                           [BRC_I32] = H5T_NATIVE_INT32,
-                           [BRC_U8] = H5T_NATIVE_UINT8};
-    return types[type];
-}
-
-/* Little-endian on disk, whatever the machine. */
-static hid_t file_type(enum brc_type type)
-{
-    const hid_t types[] = {[BRC_F64] = H5T_IEEE_F64LE,
-                           [BRC_I64] = H5T_STD_I64LE,
-                           [BRC_I32] = H5T_STD_I32LE,
-                           [BRC_U8] = H5T_STD_U8LE};
-    return types[type];
+    const hid_t types[][2] = {[BRC_F64] = {H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE},
+                              [BRC_I64] = {H5T_NATIVE_INT64, H5T_STD_I64LE},
+                              [BRC_I32] = {H5T_NATIVE_INT32, H5T_STD_I32LE},
+                              [BRC_U8] = {H5T_NATIVE_UINT8, H5T_STD_U8LE}};
+    return types[type][is_on_disk];
 }
 
 /* Files are in memory while they are made: what fails then is the memory, not the disk. */
@@ -323,45 +314,27 @@ int brc_h5_put_array(const struct brc_h5_file *f, const struct brc_h5_array *a, 
     hid_t how = without_times(H5P_DATASET_CREATE);
     if (is_packed)
         pack(how, a);
-    BRC_TRY(put_dataset(f, a->name, file_type(a->type), memory_type(a->type), space, how, data));
+    BRC_TRY(
+        put_dataset(f, a->name, type_of(a->type, true), type_of(a->type, false), space, how, data));
     return put_labels(f, a);
 }
 
-/* Opens the dataset, which must have the shape and the type of a. The caller closes *id. Rank,
- * extent and type are asked for one by one, as a faulty writer could have made any of them, and
- * HDF5 would convert what it can in silence. */
-static int open_array(const struct brc_h5_file *f, const struct brc_h5_array *a, hid_t *id)
+/* Rank, extent and type are asked for one by one, as a faulty writer could have made any of them,
+ * and HDF5 would convert what it can in silence. */
+int brc_h5_get_array(const struct brc_h5_file *f, const struct brc_h5_array *a, void *data)
 {
     int rank = a->is_flat ? 1 : 2;
     hsize_t extent[2] = {0, (hsize_t)a->width};
-    *id = H5Dopen2(f->id, a->name, H5P_DEFAULT);
-    hid_t space = H5Dget_space(*id), type = H5Dget_type(*id);
+    hid_t id = H5Dopen2(f->id, a->name, H5P_DEFAULT);
+    hid_t space = H5Dget_space(id), type = H5Dget_type(id);
     bool fits = H5Sget_simple_extent_ndims(space) == rank &&
                 H5Sget_simple_extent_dims(space, extent, NULL) == rank && extent[0] == a->rows &&
-                extent[1] == (hsize_t)a->width && H5Tequal(type, file_type(a->type)) > 0;
+                extent[1] == (hsize_t)a->width && H5Tequal(type, type_of(a->type, true)) > 0;
     H5Tclose(type);
     H5Sclose(space);
-    if (fits)
-        return 0;
-    H5Dclose(*id);
-    return brc_h5_read_failed(f, a->name);
-}
-
-/* The size of what a faulty file claims is compared with what is expected before any memory is
- * taken for it. */
-int brc_h5_check_array(const struct brc_h5_file *f, const struct brc_h5_array *a)
-{
-    hid_t id;
-    BRC_TRY(open_array(f, a, &id));
-    H5Dclose(id);
-    return 0;
-}
-
-int brc_h5_get_array(const struct brc_h5_file *f, const struct brc_h5_array *a, void *data)
-{
-    hid_t id;
-    BRC_TRY(open_array(f, a, &id));
-    herr_t status = H5Dread(id, memory_type(a->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+    herr_t status = fits ? 0 : -1;
+    if (fits && data)
+        status = H5Dread(id, type_of(a->type, false), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
     H5Dclose(id);
     return status < 0 ? brc_h5_read_failed(f, a->name) : 0;
 }

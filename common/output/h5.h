@@ -57,9 +57,8 @@ int brc_h5_put_array(const struct brc_h5_file *f, const struct brc_h5_array *a, 
  * a failure as a missing one is. */
 int brc_h5_get_text(const struct brc_h5_file *f, const char *path, char **text);
 int brc_h5_get_count(const struct brc_h5_file *f, const char *path, const char *name, size_t *n);
-/* Judges rows, width and type, before any memory is taken for them. */
-int brc_h5_check_array(const struct brc_h5_file *f, const struct brc_h5_array *a);
-/* Reads all rows into data, which has room for them; shape and type are checked once more. */
+/* Judges rows, width and type, then reads all rows into data, which has room for them; with data
+ * NULL it judges alone, so that no memory is taken for a size that only a faulty file claims. */
 int brc_h5_get_array(const struct brc_h5_file *f, const struct brc_h5_array *a, void *data);
 
 /* A dataset as brc_h5_visit meets it, in the order of names. */

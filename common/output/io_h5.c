@@ -83,7 +83,7 @@ static int read_part(const struct brc_h5_file *f, struct brc_state_part *part)
     for (int i = 0; i < part->set.n; i++) { /* before any memory is taken for it */
         struct brc_h5_array a = array_of(part, i, name);
         if (is_saved(part, i))
-            BRC_TRY(brc_h5_check_array(f, &a));
+            BRC_TRY(brc_h5_get_array(f, &a, NULL));
     }
     if (!part->is_fixed)
         BRC_TRY(brc_table_resize(f->ctx, part->table, rows));

@@ -11,29 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_SIZE = 512 };
-
-/* Grows the text by the section; NULL, with the text freed, when there is no memory. */
-static char *add_section(struct brc_context *ctx, char *text, const char *section,
-                         struct brc_param_list list, const void *values)
+/* The values are given apart from the case, since the text of one section is not all the case's. */
+static void put_section(FILE *out, const char *section, struct brc_param_list list,
+                        const void *values)
 {
-    char line[LINE_SIZE], value[BRC_TEXT_SIZE];
-    size_t used = text ? strlen(text) : 0;
-    char *grown = brc_realloc(ctx, text, used + (size_t)list.n * LINE_SIZE + 1, 1);
-    if (!grown) {
-        free(text);
-        return NULL;
-    }
-    grown[used] = '\0';
-    for (int i = 0; i < list.n; i++) {
-        if (list.params[i].flags & BRC_PARAM_FILE)
-            continue;
-        brc_params_text(&list.params[i], values, value, sizeof value);
-        int n = snprintf(line, sizeof line, "%s.%s = %s\n", section, list.params[i].key, value);
-        memcpy(grown + used, line, (size_t)n + 1);
-        used += (size_t)n;
-    }
-    return grown;
+    char value[BRC_TEXT_SIZE];
+    for (int i = 0; i < list.n; i++)
+        if (!(list.params[i].flags & BRC_PARAM_FILE))
+            fprintf(out, "%s.%s = %s\n", section, list.params[i].key,
+                    brc_params_text(&list.params[i], values, value, sizeof value));
 }
 
 /* All that a state hangs on, in the order of the sections; of models and tests only the ones that
@@ -46,17 +32,21 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
     const struct brc_rig_type *rig = brc_rigs_at(test.kind);
     if (brc_rigs_uses(rig, "rate"))
         test.rate = brc_loading_start_rate(&test);
-    char *text = add_section(ctx, NULL, "specimen", brc_specimen_param_list, &run_case->specimen);
-    if (text)
-        text = add_section(ctx, text, "test", brc_test_param_list, &test);
-    if (text)
-        text = add_section(ctx, text, rig->name, rig->params, brc_case_values(run_case, rig->name));
-    if (text)
-        text = add_section(ctx, text, "run", brc_run_param_list, &run_case->run);
-    if (text)
-        text = add_section(ctx, text, model->name, model->params,
-                           brc_case_values(run_case, model->name));
-    return text;
+    char *text = NULL;
+    size_t n;
+    FILE *out = open_memstream(&text, &n);
+    if (out) {
+        put_section(out, "specimen", brc_specimen_param_list, &run_case->specimen);
+        put_section(out, "test", brc_test_param_list, &test);
+        put_section(out, rig->name, rig->params, brc_case_values(run_case, rig->name));
+        put_section(out, "run", brc_run_param_list, &run_case->run);
+        put_section(out, model->name, model->params, brc_case_values(run_case, model->name));
+    }
+    if (out && fclose(out) == 0)
+        return text;
+    free(text);
+    brc_error_set(ctx, BRC_ERR_MEMORY, __FILE__, __LINE__, "no memory for the text of the case");
+    return NULL;
 }
 
 /* Whether the "section.key" that the line begins with may differ between the parts of one run. */
