@@ -23,7 +23,9 @@ static void set_name(struct brc_case *run_case, const char *path)
         *dot = '\0';
 }
 
-/* A struct for each model and test, chosen or not: all their sections are read. */
+/* A struct for each model and test, chosen or not: all their sections are read. Those of the common
+ * sections are members of the case, which the rest of the program reads by their types; the table
+ * of values has them, too, so that a walk over the sections finds all alike. */
 static int make_room(struct brc_context *ctx, struct brc_case *run_case)
 {
     void *const common[BRC_CASE_N_COMMON] = {&run_case->specimen, &run_case->test, &run_case->run,
@@ -40,6 +42,8 @@ static int make_room(struct brc_context *ctx, struct brc_case *run_case)
     return 0;
 }
 
+/* The test with its parameters, which stay the case's: what outlives it makes its own copy
+ * (rig.c). */
 static struct brc_test test_of(const struct brc_case *run_case)
 {
     const char *name = brc_rigs_at(run_case->test.kind)->name;

@@ -35,6 +35,9 @@ bool brc_case_section(const struct brc_case *run_case, int i, struct brc_case_se
     return true;
 }
 
+/* By a look at each: there are a dozen, and nothing asks for them while a run goes on. A section
+ * that is not there has a name and an empty list, in which no key is found: callers that have
+ * checked the name before need no branch. */
 bool brc_case_find_section(const struct brc_case *run_case, const char *name,
                            struct brc_case_section *s)
 {
@@ -45,6 +48,8 @@ bool brc_case_find_section(const struct brc_case *run_case, const char *name,
     return false;
 }
 
+/* By name and not by the place in a registry: a model that is not registered, as those of tests,
+ * has no place there, and a test without keys of its own has no section. */
 const void *brc_case_values(const struct brc_case *run_case, const char *section)
 {
     struct brc_case_section s;

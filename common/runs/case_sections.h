@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sections of a case, by number: those that every case may have, then one a registered model;
- * and the models themselves. The lowest part of the case: reading, keeping and checking stand on
- * it. */
+/* The sections of a case, by number: those that every case may have, one a registered model, one a
+ * test that has keys of its own; and the models themselves. The lowest part of the case: reading,
+ * keeping and checking stand on it. */
 #ifndef BRC_CASE_SECTIONS_H
 #define BRC_CASE_SECTIONS_H
 

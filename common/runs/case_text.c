@@ -32,6 +32,7 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
     const struct brc_rig_type *rig = brc_rigs_at(test.kind);
     if (brc_rigs_uses(rig, "rate"))
         test.rate = brc_loading_start_rate(&test);
+    /* a stream that grows: how long a value's text is hangs on its unit and its digits */
     char *text = NULL;
     size_t n;
     FILE *out = open_memstream(&text, &n);

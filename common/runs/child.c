@@ -56,7 +56,9 @@ static void live(const struct pool *p, struct slot *s)
     _exit(0);
 }
 
-/* In a free slot; the caller knows that there is one. */
+/* In a free slot; the caller knows that there is one. The parent keeps the reading end of the pipe
+ * alone: with the other one open it would never see its end, by which it knows that the child has
+ * gone. */
 static int start(struct pool *p, int run)
 {
     int reports[2];

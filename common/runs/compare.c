@@ -146,6 +146,7 @@ static int check_energy(const struct compare *c)
 
 /* ---- results ------------------------------------------------------------------------------- */
 
+/* To the terminal first: the table is there even when the folder has no room for it. */
 static int write_table(struct compare *c)
 {
     const struct brc_summary *summary[MAX_RUNS];

@@ -101,6 +101,8 @@ static int add(struct brc_context *ctx, const struct brc_converge_options *optio
     return 0;
 }
 
+/* The weight is that of the axes on which the work goes with the number of steps; those on which it
+ * goes otherwise set their own. */
 static struct brc_converge_setting make(const char *axis, enum brc_converge_role role,
                                         double factor)
 {
@@ -249,6 +251,7 @@ static int add_choice(struct brc_context *ctx, const struct brc_converge_options
     return 0;
 }
 
+/* The constant text of that name: settings keep it, and outlive the list of the command line. */
 static const char *find_axis(const struct brc_converge_axes *axes, const char *name)
 {
     for (int i = 0; i < axes->n; i++)
@@ -257,6 +260,7 @@ static const char *find_axis(const struct brc_converge_axes *axes, const char *n
     return NULL;
 }
 
+/* Once, though models may share the name of a choice, and the user may name an axis twice. */
 static int add_axis(struct brc_context *ctx, struct brc_converge_axes *axes, const char *name)
 {
     if (find_axis(axes, name))

@@ -26,6 +26,7 @@ static void copy_values(const struct brc_converge_study *study,
         value[i] = is_good(study, &s->run[i]) ? s->run[i].result[study->observable] : NAN;
 }
 
+/* Of a against b, specimen by specimen: those that only one of them has finished are left out. */
 static struct brc_converge_error difference(const struct brc_converge_study *study,
                                             const struct brc_converge_setting *a,
                                             const struct brc_converge_setting *b)

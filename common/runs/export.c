@@ -170,6 +170,8 @@ struct surface {
     size_t *first, *grain;              /* grains by fragment */
 };
 
+/* The grains of a fragment by counting, as the sizes are known: a grain is put where its fragment's
+ * part of the list has come to, so that each start ends up as the next one's and is moved back. */
 static int open_surface(struct brc_context *ctx, struct surface *s)
 {
     const struct brc_facets *f = &s->sim->specimen->facets;
@@ -190,6 +192,8 @@ static int open_surface(struct brc_context *ctx, struct surface *s)
     return 0;
 }
 
+/* A vertex that was last met in another fragment starts anew, so that the marks need not be cleared
+ * between fragments; a grain meets its vertices once for each of its facets, and counts once. */
 static void add_vertex(struct surface *s, int32_t v, int32_t grain, int32_t fragment)
 {
     double x[3];

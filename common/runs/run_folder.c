@@ -58,6 +58,8 @@ bool brc_run_has_begun(const char *dir)
 
 /* ---- what is in the way -------------------------------------------------------------------- */
 
+/* One message for all that may be in the way: what to do is the same, and which file it was may
+ * tell the user that the folder is another one than he thinks. */
 static int fail_occupied(struct brc_context *ctx, const char *dir, const char *name)
 {
     BRC_FAIL(ctx, BRC_ERR_INPUT,
