@@ -19,7 +19,7 @@ enum {
     POLY_TASKS = 1024   /* points at a time */
 };
 
-/* Four contacts. */
+/* Four contacts. Contact i of the batch is lane i % 4 of four i / 4. */
 struct poly_contact4 {
     brc_lanes x[3], dv[3], wa[3], wb[3]; /* from a to b; relative velocity and spins */
     brc_lanes path;                      /* m, relative path of the step */
@@ -49,7 +49,8 @@ enum {
     POLY_BOND = 24
 };
 
-/* A point's spring (struct poly_points), in one line of the cache. */
+/* A point's spring (struct poly_points), in one line of the cache. With its normal, which the
+ * spring is turned along with. */
 enum { POLY_XI = 0, POLY_WEIGHT = 3, POLY_NORMAL = 4, POLY_SPRING = 8 };
 
 /* Motion of a contact since it was computed literally (struct poly_contacts, motion): displacement
@@ -180,6 +181,7 @@ typedef void poly_pose_kernel(const struct brc_sim *sim, const struct poly_state
 struct poly_loop {
     poly_kernel *motion, *points, *finish;
 };
+/* Chosen once a run, so that options cost nothing in a step. */
 struct poly_kernels {
     poly_pose_kernel *pose; /* vertices and planes in space */
     poly_list_kernel *list; /* poly_list_features */

@@ -8,7 +8,8 @@
 
 #include "polyhedra/lanes3.h"
 
-/* Constants of four bonds. */
+/* Constants of four bonds. Without a bond they are 0 and the law gives 0: no kernel branches on the
+ * status of a contact. */
 struct poly_bonds4 {
     brc_lanes kn, kt; /* N/m: modulus x area / strain length; 0 where there is no bond */
     brc_lanes ktheta; /* N m: 0 without torsion */
@@ -33,7 +34,8 @@ struct poly_bond_state4 {
     brc_lanes energy;  /* J, stored */
 };
 
-/* Mean normal of the two faces, whose outward normals are na and nb. */
+/* Mean normal of the two faces, whose outward normals are na and nb. That of b points the other
+ * way, so that their difference is along the mean of both, seen from a. */
 BRC_LANES_INLINE void poly_mean_normal(brc_lanes n[3], const brc_lanes na[3], const brc_lanes nb[3])
 {
     poly_sub3(n, na, nb);
@@ -61,6 +63,8 @@ BRC_LANES_INLINE brc_lanes poly_twist(const brc_lanes n[3], const brc_lanes ta[3
     return angle;
 }
 
+/* Both halves pull at the midpoint of their material points, so that force and moment balance
+ * though these have come apart. */
 BRC_LANES_INLINE void poly_bond_law(struct poly_bond_state4 *r, const struct poly_bonds4 *bond,
                                     const struct poly_bond_pose4 *pose)
 {
@@ -86,7 +90,8 @@ BRC_LANES_INLINE void poly_bond_law(struct poly_bond_state4 *r, const struct pol
                        bond->ktheta * pose->twist * pose->twist);
 }
 
-/* The bond breaks where this is above 1. */
+/* The bond breaks where this is above 1. Tension has the ramp of eq 12 here, too, so that
+ * compression breaks no bond. */
 BRC_LANES_INLINE brc_lanes poly_bond_use(const struct poly_bond_state4 *r)
 {
     return r->term[0] + r->term[1] + r->term[2]; /* eq:gt12:15 */

@@ -3,6 +3,8 @@
  * same contact in each. */
 #include "polyhedra/motion_kernels.inc.h"
 
+/* Four times the work of one bond, for what is asked seldom: a scalar twin of the law would be a
+ * second place to be wrong in. */
 bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
                           const struct poly_state *st, const struct brc_contacts *c, size_t row)
 {

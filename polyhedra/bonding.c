@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bonds of a specimen at its start: of grains over the facets that they share, and the holds of
- * platens on the facets that lie on them. Called once, by sim.c; bonds come from nowhere else. */
+ * platens on the facets that lie on them. Called once, by sim.c; bonds come from nowhere else. What
+ * a bond is made of stays as it is until the bond breaks; the law (bond.h) only reads it. */
 #include "polyhedra/poly.h"
 
 #include <stdlib.h>
@@ -15,8 +16,10 @@ static void to_frame(double r[3], const double q[4], const double v[3])
 
 /* Material points, normals and tangents of a contact's bond in the frames of its bodies; n from a.
  */
-/* Points and directions are kept in both bodies rather than a displacement that is added up:
- * rigid motion of a pair gives no force then, whatever the angle, and nothing drifts. */
+/* Points and directions are kept in both bodies rather than a displacement that is added up: rigid
+ * motion of a pair gives no force then, whatever the angle, and nothing drifts. The tangents are
+ * one in space at the start and are carried by a body each: what they have turned against each
+ * other is the twist. */
 static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
                      const double at[3], const double n[3])
 {
@@ -50,22 +53,24 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, si
     /* Erosion may take away a small facet on one side or both. With the area of the facet it is
      * bonded all the same: the rock was bonded there. */
     st->n_removed += ea == 0 || eb == 0;
-    *poly_bond_area(columns, row) = f->area[facet];
+    columns->bond[row][POLY_BOND_AREA] = f->area[facet];
     if (params->area == POLY_AREA_ERODED)
-        *poly_bond_area(columns, row) = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
-    *poly_bond_length(columns, row) =
+        columns->bond[row][POLY_BOND_AREA] = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+    columns->bond[row][POLY_BOND_LENGTH] =
         params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
     fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
-    if (!params->bonds || *poly_bond_area(columns, row) == 0)
+    if (!params->bonds || columns->bond[row][POLY_BOND_AREA] == 0)
         return;
     c->status[row] = BRC_INTACT;
     st->n_bonds++;
-    st->mean_area += *poly_bond_area(columns, row);
-    st->mean_length += *poly_bond_length(columns, row);
+    st->mean_area += columns->bond[row][POLY_BOND_AREA];
+    st->mean_length += columns->bond[row][POLY_BOND_LENGTH];
 }
 
 /* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
- * distance of its centre (or the gap R) makes it. */
+ * distance of its centre (or the gap R) makes it. A platen has no half of its own, being rigid. Its
+ * normal is that of its surface at the facet, so that a curved platen holds each facet along its
+ * own line. */
 static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
                       const struct brc_platen *p, size_t facet)
 {
@@ -79,12 +84,12 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     brc_platen_height(p, at, f->centroid[facet], &unused, n);
     brc_scale(back, n, -1);
     c->facet[row] = (int32_t)facet;
-    *poly_bond_area(columns, row) =
+    columns->bond[row][POLY_BOND_AREA] =
         params->area == POLY_AREA_FACET ? f->area[facet] : st->eroded[facet][0];
-    *poly_bond_length(columns, row) =
+    columns->bond[row][POLY_BOND_LENGTH] =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : height;
     fix_bond(sim, c, row, f->centroid[facet], back);
-    if (p->bonding != BRC_BONDING_NONE && *poly_bond_area(columns, row) > 0)
+    if (p->bonding != BRC_BONDING_NONE && columns->bond[row][POLY_BOND_AREA] > 0)
         c->status[row] = BRC_INTACT;
 }
 
@@ -117,6 +122,8 @@ static int open_platens(struct brc_sim *sim, struct poly_state *st)
     return code;
 }
 
+/* The facets of a specimen are sorted by their cells, so the list of pairs is sorted as
+ * brc_contacts_set wants it, and contact i is that of facets[i]. */
 int poly_open_bonds(struct brc_sim *sim, void *state)
 {
     const struct brc_facets *f = &sim->specimen->facets;

@@ -13,7 +13,8 @@ void poly_on_face(struct poly_closest *r, const struct poly_core *c, int32_t f, 
     r->feature = poly_feature_code(f, POLY_ON_FACE);
 }
 
-/* Closest point x of the core's surface; on the surface itself the given normal stands in. */
+/* Closest point x of the core's surface; on the surface itself the given normal stands in. Where p
+ * is on the surface the direction to it is none, and the law would divide 0 by 0. */
 static void on_point(struct poly_closest *r, const double p[3], const double x[3],
                      const double stand_in[3], int32_t feature)
 {
@@ -56,7 +57,9 @@ void poly_closest_search(struct poly_closest *r, const struct poly_core *c, cons
     }
 }
 
-/* One step of the walk from an edge: the next feature, or the same when it is this edge. */
+/* One step of the walk from an edge: the next feature, or the same when it is this edge. Inside of
+ * the side of either face, the closest point is on that face; outside of both it is on the edge, by
+ * the definition of sides. */
 static int32_t walk_edge(struct poly_closest *r, const struct poly_core *c, int32_t index,
                          const double p[3])
 {
@@ -77,6 +80,9 @@ static int32_t walk_edge(struct poly_closest *r, const struct poly_core *c, int3
     return r->feature;
 }
 
+/* Where the projection of p on no edge is positive, p is in the cone of the vertex and the walk
+ * ends. Which of the others it leaves by does not matter for where it ends: the surface is convex.
+ */
 static int32_t walk_vertex(struct poly_closest *r, const struct poly_core *c, int32_t index,
                            const double p[3])
 {
@@ -151,6 +157,8 @@ void poly_closest_walk(struct poly_closest *r, const struct poly_core *c, const 
         poly_closest_search(r, c, p);
 }
 
+/* Whatever face was asked for is what r->feature names, though the closest point may be on its
+ * edge: `closed` and `strict` know faces alone. */
 void poly_closest_on_face(struct poly_closest *r, const struct poly_core *c, int32_t index,
                           const double p[3])
 {
@@ -173,6 +181,8 @@ void poly_closest_on_face(struct poly_closest *r, const struct poly_core *c, int
     on_point(r, p, nearest, f->n, poly_feature_code(index, POLY_ON_FACE));
 }
 
+/* A vertex that has gone through the core is below many faces. If each pushed it, the force would
+ * jump by their number as it enters; the nearest one alone pushes it out. */
 bool poly_closest_of_rule(struct poly_closest *r, const struct poly_core *c, int32_t face,
                           const double p[3], bool is_strict, double contact_distance)
 {
@@ -194,6 +204,8 @@ bool poly_closest_of_rule(struct poly_closest *r, const struct poly_core *c, int
     return true;
 }
 
+/* The region of space that belongs to a feature is convex and bounded by planes, so the least
+ * distance to one of them is a bound that holds in every direction. */
 double poly_closest_margin(const struct poly_core *c, const struct poly_closest *at,
                            const double p[3])
 {
@@ -222,6 +234,9 @@ double poly_closest_margin(const struct poly_core *c, const struct poly_closest 
     return margin;
 }
 
+/* Two bounds, and the larger one holds: the distance has to be used up, and under `strict` the
+ * vertex has to come in over the side that it is farthest outside of. Inside the core it may touch
+ * at once. */
 double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3], bool is_strict,
                          double contact_distance)
 {

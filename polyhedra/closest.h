@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The closest feature of a core to a point: walks and searches in the body frame of the core, which
  * decide where; the laws take the distance from there (geometry.h). No length or angle is compared
- * with an absolute number: results scale with the sample. */
+ * with an absolute number: results scale with the sample. Scalars throughout: of the steps of a
+ * walk each depends on the one before, so that lanes would have nothing to do side by side. */
 #ifndef POLY_CLOSEST_H
 #define POLY_CLOSEST_H
 
@@ -35,7 +36,8 @@ static inline double poly_most(double a, double b)
     return a > b ? a : b;
 }
 
-/* Features are named by a code: 4 x index + kind. */
+/* Features are named by a code: 4 x index + kind. One number, so that a point remembers its closest
+ * feature in the place where an index of a face would be (struct poly_feature). */
 enum poly_closest_kind { POLY_ON_FACE, POLY_ON_EDGE, POLY_ON_VERTEX };
 
 struct poly_closest {
@@ -71,7 +73,9 @@ static inline int32_t poly_outside(const struct poly_core *c, const struct poly_
     return worst;
 }
 
-/* Face whose plane p is highest above; inside the core this is the nearest face. */
+/* Face whose plane p is highest above; inside the core this is the nearest face. Outside the core
+ * it is a face that p is above, a good one to begin a walk at; the height bounds the distance from
+ * below. */
 static inline int32_t poly_highest(const struct poly_core *c, const double p[3], double *height)
 {
     int32_t best = 0;
@@ -88,7 +92,7 @@ static inline int32_t poly_highest(const struct poly_core *c, const double p[3],
 }
 
 /* Closest point of the line of an edge, in parts of it from its first end; along is the whole edge.
- */
+ * Outside 0 to 1 where that is beyond an end: walks want to know beyond which. */
 static inline double poly_along_edge(const struct poly_core *c, int32_t edge, const double p[3],
                                      double along[3])
 {

@@ -14,7 +14,8 @@ struct poly_spring_law {
     double limit;  /* largest tangential displacement per overlap: mu kn / kt */
 };
 
-/* Pair stiffness of two feature stiffnesses: harmonic, equal for equal grains. */
+/* Pair stiffness of two feature stiffnesses: harmonic, equal for equal grains. 0 for grains without
+ * stiffness, where the mean would be 0/0. */
 static inline double poly_pair_stiffness(double a, double b)
 {
     return a + b > 0 ? 2 * a * b / (a + b) : 0;
@@ -45,7 +46,8 @@ BRC_LANES_INLINE void poly_force_at(struct poly_wrench4 *w, const brc_lanes f[3]
     brc_lanes_cross(w->m, arm, f);
 }
 
-/* Elastic normal force, with the gradient part under `merged`. */
+/* Elastic normal force, with the gradient part under `merged`. Both parts are the gradient of the
+ * energy w K delta^2 / 2, by delta and by w, so that no closed path gains or loses by them. */
 BRC_LANES_INLINE void poly_normal_force(struct poly_wrench4 *w, const struct poly_geometry4 *t,
                                         double kn, const brc_lanes arm[3])
 {
@@ -57,7 +59,8 @@ BRC_LANES_INLINE void poly_normal_force(struct poly_wrench4 *w, const struct pol
 }
 
 /* Old tangential displacement turned with the contact frame: tilt from the old to the new normal,
- * then twirl by the angle 2 t about it. The length is kept. */
+ * then twirl by the angle 2 t about it. The length is kept. Without the twirl the direction of
+ * friction would stay behind in a pair that turns about its normal. */
 BRC_LANES_INLINE void poly_turn_spring(brc_lanes xi[3], const brc_lanes n_old[3],
                                        const brc_lanes n[3], brc_lanes t)
 {
@@ -76,7 +79,7 @@ BRC_LANES_INLINE void poly_turn_spring(brc_lanes xi[3], const brc_lanes n_old[3]
 }
 
 /* Adds the tangential part of du to xi and caps it: what is left over has slipped. Returns where it
- * has. */
+ * has. Stored capped, so that a contact that turns back sticks at once. */
 BRC_LANES_INLINE brc_mask poly_slide_spring(brc_lanes xi[3], const brc_lanes n[3],
                                             const brc_lanes du[3], brc_lanes limit)
 {
@@ -136,7 +139,8 @@ BRC_LANES_INLINE brc_mask poly_shear_force(struct poly_springs4 *p, struct poly_
 }
 
 /* Viscous force on b for the velocity u of b relative to a. The normal part never turns the normal
- * force into a pull. */
+ * force into a pull. The bound is the elastic force itself, so that both together are 0 at
+ * least. */
 BRC_LANES_INLINE void poly_viscous_force(brc_lanes f[3], const struct poly_geometry4 *t, double kn,
                                          brc_lanes gn, brc_lanes gt, const brc_lanes u[3])
 {

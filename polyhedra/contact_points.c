@@ -24,12 +24,14 @@ static bool is_kept(const struct brc_contacts *c, size_t row)
     if (c->status[row] == BRC_INTACT)
         return true;
     for (int32_t k = 0; k < c->np[row]; k++)
-        if (*poly_weight(points, (size_t)c->p0[row] + (size_t)k) > 0)
+        if (points->spring[(size_t)c->p0[row] + (size_t)k][POLY_WEIGHT] > 0)
             return true;
     return false;
 }
 
-/* The neighbours, and the contacts that are bonded or touch. */
+/* The neighbours, and the contacts that are bonded or touch. Both are sorted by (a, b), so that one
+ * pass makes their union, and the order of contacts follows from the numbers of the bodies alone,
+ * never from when they were found. */
 static int merge_contacts(struct brc_context *ctx, struct brc_contacts *c,
                           const struct brc_neighbours *near)
 {
@@ -63,19 +65,20 @@ int poly_update_contacts(struct brc_sim *sim, void *state, const struct brc_neig
 
 /* --- feature lists ---------------------------------------------------------------------------- */
 
-/* The same vertex keeps its point wherever its closest point is; other points are told by both
- * features. */
-static bool is_same(const struct poly_points *points, size_t p, const struct poly_feature *f,
-                    bool merged)
+/* Order of a feature and a point, less than 0 where the feature comes before, 0 where they are the
+ * same one. A vertex of `merged` is told by its own number alone: it keeps its point, and its
+ * place among the others, wherever its closest feature is. */
+static int32_t compare_point(const struct poly_feature *f, const struct poly_points *points,
+                             size_t p, bool merged)
 {
-    if (points->kind[p] != f->kind)
-        return false;
-    bool i = points->i[p] == f->i, j = points->j[p] == f->j;
+    int32_t di = f->i - points->i[p], dj = f->j - points->j[p];
+    if (f->kind != points->kind[p])
+        return f->kind - points->kind[p];
     if (merged && f->kind == POLY_VERTEX_A)
-        return i;
+        return di;
     if (merged && f->kind == POLY_VERTEX_B)
-        return j;
-    return i && j;
+        return dj;
+    return di != 0 ? di : dj;
 }
 
 static void copy_point(const struct poly_points *points, size_t to, size_t from)
@@ -91,12 +94,14 @@ static void copy_point(const struct poly_points *points, size_t to, size_t from)
     memcpy(points->spring[to], points->spring[from], sizeof points->spring[from]);
 }
 
-/* Moves the state of points that act to the front, in order; returns how many. */
+/* Moves the state of points that act to the front, in order; returns how many. Their closest
+ * feature is looked for anew (feature_valid_to), as the skin that it was valid in has ended with
+ * the old list. */
 static size_t gather_active(const struct poly_points *points, size_t first, size_t n)
 {
     size_t kept = first;
     for (size_t p = first; p < first + n; p++) {
-        if (*poly_weight(points, p) <= 0)
+        if (points->spring[p][POLY_WEIGHT] <= 0)
             continue;
         if (kept < p)
             copy_point(points, kept, p);
@@ -105,6 +110,8 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
     return kept - first;
 }
 
+/* Without a spring and without an item: a point that has been asleep was apart, so it has nothing
+ * to remember. */
 static void set_point(const struct poly_points *points, size_t p, const struct poly_feature *f,
                       double sleep, double hold)
 {
@@ -119,19 +126,9 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     memset(points->spring[p], 0, sizeof points->spring[p]);
 }
 
-/* Order of the points that are awake, so that sums over them do not depend on how they came there.
- * A vertex of `merged` comes before all others by its own number alone. */
-static bool comes_before(const struct poly_feature *f, const struct poly_points *points, size_t p,
-                         bool merged)
-{
-    if (f->kind != points->kind[p])
-        return f->kind < points->kind[p];
-    int32_t di = f->i - points->i[p], dj = f->j - points->j[p];
-    if (merged && f->kind == POLY_VERTEX_B)
-        return dj < 0;
-    return di != 0 || (merged && f->kind == POLY_VERTEX_A) ? di < 0 : dj < 0;
-}
-
+/* Points that are awake stand in the order of compare_point, so that sums over them do not depend
+ * on how they came there. A point that wakes up is put in its place among the others by insertion:
+ * few wake in one step, and the rest are sorted already. */
 void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
 {
     const struct poly_points *points = c->point_columns;
@@ -142,7 +139,7 @@ void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
         struct poly_feature f = poly_point(points, next);
         double hold = points->feature_valid_to[next];
         size_t p = next;
-        for (; p > first && comes_before(&f, points, p - 1, merged); p--)
+        for (; p > first && compare_point(&f, points, p - 1, merged) < 0; p--)
             copy_point(points, p, p - 1);
         set_point(points, p, &f, columns->skin_left[row], hold);
         columns->ready[row] = 0;
@@ -166,7 +163,9 @@ void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep
     columns->ready[row] = 0;
 }
 
-/* Pairs that may touch at once first, then by the path that they are free for. */
+/* Pairs that may touch at once first, then by the path that they are free for. The order of what
+ * sleeps. Ties are told by the features, so that the order does not hang on how the list was
+ * made. */
 static int compare_features(const void *x, const void *y)
 {
     const struct poly_feature *f = x, *g = y;
@@ -197,7 +196,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
     size_t first = (size_t)c->p0[row], next = first + kept;
     for (size_t k = 0; k < list->n; k++) {
         size_t p = first;
-        while (p < first + kept && !is_same(points, p, &list->feature[k], merged))
+        while (p < first + kept && compare_point(&list->feature[k], points, p, merged) != 0)
             p++;
         if (p < first + kept) {
             memcpy(points->near[p], list->feature[k].near, sizeof points->near[p]);
@@ -212,6 +211,9 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
     return 0;
 }
 
+/* Without a feature in reach, rebuild_at says when to look again, by the paths of both bodies,
+ * which need no look at the pair; with some, skin_left does, by their relative path, which a common
+ * motion leaves as it is. */
 int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t row)
 {
     struct brc_contacts *c = &sim->pairs;

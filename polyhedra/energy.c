@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Energy stored in bonds and springs, from the state alone: what the ledger is checked against. */
-#include "polyhedra/platen_geometry.h"
+/* Energy stored in bonds and springs, from the state alone: what the ledger is checked against.
+ * Called by common/ when somebody asks how far the ledger has drifted, so it may be slow. It shares
+ * the laws with the loop, but not one sum, list or tangent. */
+#include "polyhedra/poly.h"
 
 struct store {
     double kn, kt;
@@ -8,16 +10,15 @@ struct store {
     double (*of_grain)[BRC_N_ACCOUNTS];
 };
 
-static void add_point(const struct store *s, int32_t a, const struct poly_geometry *t, size_t p)
+/* On the account of a, as the loop books it. */
+static void add_touch(void *user, const struct poly_active *active)
 {
-    double *stored = s->of_grain[a];
+    const struct store *s = user;
+    const struct poly_geometry *t = &active->geometry;
+    double *stored = s->of_grain[active->a];
     stored[BRC_ACCOUNT_NORMAL] += 0.5 * s->kn * t->weight * t->delta * t->delta;
-    stored[BRC_ACCOUNT_SHEAR] += 0.5 * s->kt * t->weight * brc_norm2(poly_xi(s->points, p));
-}
-
-static void add_active(void *user, const struct poly_active *active)
-{
-    add_point(user, active->a, &active->geometry, active->point);
+    stored[BRC_ACCOUNT_SHEAR] +=
+        0.5 * s->kt * t->weight * brc_norm2(s->points->spring[active->point] + POLY_XI);
 }
 
 /* Also those of linearised contacts are taken from the pose: the ledger shows by this what
@@ -38,14 +39,10 @@ void poly_energy(const struct brc_sim *sim, const void *state, double (*of_grain
     const struct brc_contacts *c = &sim->platens;
     struct store s = {poly_pair_stiffness(p->kn, p->kn), poly_pair_stiffness(p->kt, p->kt),
                       sim->pairs.point_columns, of_grain};
-    poly_each_active(sim, st, add_active, &s);
+    poly_each_active(sim, st, add_touch, &s);
     s.points = c->point_columns;
     for (size_t row = 0; row < c->n; row++)
-        for (size_t q = (size_t)c->p0[row], end = q + (size_t)c->np[row]; q < end; q++) {
-            struct poly_geometry t;
-            if (poly_platen_contact(&t, sim, st, row, q, 0))
-                add_point(&s, c->a[row], &t, q);
-        }
+        poly_each_touch(sim, st, c, row, 0, add_touch, &s);
     add_bonds(&s, sim, st, &sim->pairs);
     add_bonds(&s, sim, st, c);
 }

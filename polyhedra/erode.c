@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shape operation: cells become eroded cores with the mass of the whole cell. */
+/* The shape operation: cells become eroded cores with the mass of the whole cell. Called once, by
+ * sim.c. Erosion itself is geometry and stands in common/specimen/erosion.h; what a core is for is
+ * not known there, and how it is cut not here. */
 #include "polyhedra/poly.h"
 
 #include "common/specimen/erosion.h"
@@ -36,7 +38,8 @@ static double smallest_inscribed(struct brc_erosion *e, const struct brc_facets 
     return radius;
 }
 
-/* The core in the body frame. */
+/* The core in the body frame. The frame is that of the principal axes of the whole cell: there the
+ * inertia is diagonal, as the integrator wants it, and the core never changes. */
 static int add_core(struct brc_context *ctx, struct poly_shapes *shapes, struct eroder *e,
                     const double x[3], const double q[4])
 {
@@ -58,7 +61,9 @@ static int add_core(struct brc_context *ctx, struct poly_shapes *shapes, struct 
     return poly_shapes_add(ctx, shapes, &solid);
 }
 
-/* What the core keeps of each of the cell's facets. */
+/* What the core keeps of each of the cell's facets. A facet belongs to two cells, which erode it on
+ * their own, so that it has two areas. Bonds may take their mean, and the header says how many
+ * facets lose one of them (bonding.c). */
 static int keep_areas(struct brc_context *ctx, struct brc_erosion *e, double (*eroded)[2])
 {
     const struct brc_facets *f = e->facets;
@@ -70,6 +75,8 @@ static int keep_areas(struct brc_context *ctx, struct brc_erosion *e, double (*e
     return 0;
 }
 
+/* Mass, centre and inertia are those of the cell before erosion: a rock has no gaps where its
+ * grains are rounded. */
 static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct eroder *e, size_t i)
 {
     struct brc_context *ctx = sim->ctx;
@@ -91,6 +98,7 @@ static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct eroder 
             p->radius, i, b->volume[i], smallest_inscribed(&e->erosion, f, p->radius));
     BRC_TRY(add_core(ctx, &st->shapes, e, b->x[i], b->q[i]));
     BRC_TRY(keep_areas(ctx, &e->erosion, st->eroded));
+    /* The rounding reaches R farther than any vertex of the core. */
     b->bounding_radius[i] = poly_shapes_reach(&st->shapes, i) + p->radius;
     return 0;
 }
@@ -114,6 +122,7 @@ int poly_shape(struct brc_sim *sim, void *state)
         brc_alloc(sim->ctx, st->shapes.face_first[st->shapes.n], sizeof *st->global_planes);
     if (st->global_vertices == NULL || st->rotation == NULL || st->global_planes == NULL)
         return BRC_ERR_MEMORY;
+    /* Platens do not turn, but they are posed like all bodies. */
     for (size_t i = sim->bodies.n_grains; i < sim->bodies.n; i++)
         sim->bodies.q[i][0] = 1;
     return 0;

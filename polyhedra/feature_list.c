@@ -3,6 +3,8 @@
  * and never shrinks. */
 #include "polyhedra/feature_list.h"
 
+#include "common/base/grow.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,14 +18,7 @@ void poly_list_free(struct poly_list *l)
 
 int poly_list_add(struct brc_context *ctx, struct poly_list *l, const struct poly_feature *f)
 {
-    if (l->n == l->cap) {
-        size_t cap = l->cap > 0 ? 2 * l->cap : 64;
-        struct poly_feature *grown = brc_realloc(ctx, l->feature, cap, sizeof *grown);
-        if (grown == NULL)
-            return BRC_ERR_MEMORY;
-        l->feature = grown;
-        l->cap = cap;
-    }
+    BRC_GROW(ctx, l->feature, l->cap, l->n + 1);
     l->feature[l->n++] = *f;
     return 0;
 }

@@ -29,6 +29,8 @@ static inline int32_t *poly_remembered(struct poly_feature *f)
     return f->kind == POLY_VERTEX_B ? &f->i : &f->j;
 }
 
+/* Kept for the whole run and filled for one contact after the other, so that making a list asks for
+ * no memory once the largest has been met. */
 struct poly_list {
     struct poly_feature *feature;
     size_t n, cap;

@@ -14,7 +14,9 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-/* The other core's vertices near v lower its weight. */
+/* The other core's vertices near v lower its weight. The same lines as in the loop
+ * (poly_fade_vertices), with other places to read vertices from: one law, so that a contact may go
+ * over from here to there without a jump. */
 static void fade_vertex(struct poly_geometry4 *t, const struct poly_pair *p, bool of_b,
                         const brc_lanes v[3], brc_lanes sign, const int32_t near[POLY_NEAR])
 {
@@ -75,6 +77,8 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
 
 /* --- edges ------------------------------------------------------------------------------------ */
 
+/* In space and from the ends of both edges, as the loop has it: the body frame of either core would
+ * prefer one of the two. */
 static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
                         const struct poly_feature *f, uint8_t *active, enum poly_rule rule)
 {
@@ -87,6 +91,7 @@ static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
         poly_all3(ends[2 + k], p->vb[p->b.end[f->j][k]]);
     }
     brc_mask touches = poly_edge_geometry(&all, &len, ends, &side, brc_lanes_all(p->reach), rule);
+    /* 3: edges of `closed` that touch without crossing have no side to remember. */
     *active = !touches[0] ? 0 : side[0] < 0 ? 2 : side[0] > 0 ? 1 : 3;
     poly_geometry_lane(t, &all, 0);
     return *active != 0;

@@ -16,7 +16,8 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
 /* How a listed feature pair touches now; *active is its side (0 when apart), and the closest
  * feature that it remembers may be updated. When apart, -delta is a relative path that it is free
  * for. *margin: how far a vertex may move before its closest feature changes, 0 or less where that
- * is not known. */
+ * is not known. What it returns follows from poses and the side alone: the remembered feature is
+ * where the walk begins, not what it finds. */
 bool poly_find_contact(struct poly_geometry *t, const struct poly_pair *p, struct poly_feature *f,
                        uint8_t *active, double *margin, enum poly_rule rule);
 

@@ -7,7 +7,9 @@
 /* Room above the moments of stiffness, so that turning arms do not count as changes. */
 #define POLY_K_ROOM 1.02
 
-/* Stiffness of a contact: k_version changes when it grows, or has fallen for good. */
+/* Stiffness of a contact: k_version changes when it grows, or has fallen for good. Masses and the
+ * stable step are found anew when k_version changes; a moment
+ * that has shrunk by less than the room twice over only leaves them on the safe side. */
 static void store_stiffness(struct brc_contacts *c, size_t row, const double k[3])
 {
     double *old = c->k[row];
@@ -20,7 +22,8 @@ static void store_stiffness(struct brc_contacts *c, size_t row, const double k[3
     c->k_version++;
 }
 
-/* True when the travel of a contact's bodies calls for a new list. */
+/* True when the travel of a contact's bodies calls for a new list. For contacts without listed
+ * features, which have no relative path: the sum of the paths of both bodies is a bound of it. */
 static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t row)
 {
     const struct poly_contacts *columns = c->model_columns;
@@ -52,7 +55,7 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
                               .b = c->b[row],
                               .facet = c->facet[row],
                               .mode = (enum brc_mode)poly_bond_mode(&bond),
-                              .area = *poly_bond_area(columns, row),
+                              .area = columns->bond[row][POLY_BOND_AREA],
                               .energy = bond.energy - last};
     brc_copy(event.x, bond.x);
     brc_copy(event.n, bond.n);
@@ -127,7 +130,9 @@ BRC_LANES_INLINE void fetch_points(const struct poly_batch *batch)
     }
 }
 
-/* The contacts ahead become those of the batch. */
+/* The contacts ahead become those of the batch. Whole fours, filled up by the last contact once
+ * more: what is computed for these lanes is written to the same places with the same values, so
+ * that no kernel needs a remainder. */
 static void take_contacts(struct poly_batch *batch)
 {
     const struct brc_contacts *c = batch->contacts;
@@ -149,7 +154,8 @@ static void take_contacts(struct poly_batch *batch)
 }
 
 /* Lists the features of contact i of the batch anew when its path calls for it, and breaks its
- * bond. */
+ * bond. Here is all that may allocate, search or take a branch that no lane could follow; stable
+ * contacts do without. */
 static int prepare(struct poly_batch *batch, int32_t i)
 {
     struct brc_sim *sim = batch->sim;
@@ -186,7 +192,9 @@ static void store_contact(struct poly_batch *batch, int32_t i)
     store_stiffness(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
 }
 
-/* The works of contact i of the batch, and what else it has booked, on the accounts of a. */
+/* The works of contact i of the batch, and what else it has booked, on the accounts of a. The sum
+ * of a contact first and then the account, so that the order of additions on a grain's account is
+ * that of its contacts. */
 static void book_contact(struct poly_batch *batch, int32_t i)
 {
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
@@ -202,6 +210,7 @@ static void book_contact(struct poly_batch *batch, int32_t i)
         brc_lanes_put(account + k, brc_lanes_at(account + k) + brc_lanes_at(e + k));
 }
 
+/* Once a step: what all contacts of the case share is read here and not by kernels. */
 static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct poly_state *st,
                        bool is_platens)
 {

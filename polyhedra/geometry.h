@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geometry of four feature contacts side by side: distance, normal, overlap (eqs 1-3, 5) and the
  * weights of the `merged` rule. The loops have four contacts of whatever pairs; who has one alone
- * (literal.c, platens) gives it to all lanes and reads one. Knows neither grains nor lists. */
+ * (features.c, platen_geometry.h) gives it to all lanes and reads one. Knows neither grains nor
+ * lists. */
 #ifndef POLY_GEOMETRY_H
 #define POLY_GEOMETRY_H
 
 #include "polyhedra/lanes3.h"
 
-/* Weight of crossing edges: full from this squared sine on (5.7 degrees). */
+/* Weight of crossing edges: full from this squared sine on (5.7 degrees). Below it the ends of the
+ * parallel part carry the load, which are vertices (README.md). */
 #define POLY_SKEW 0.01
 /* Edges count as parallel when the squared sine of their angle is below this. Relative, so that
  * results scale with the sample. */
@@ -26,7 +28,8 @@ struct poly_lengths {
 /* Four contacts. Where nothing touches all is zero but for delta, and -delta is a relative path of
  * the bodies that cannot bring them in touch. Where they fade, they can but touch with a weight
  * that grows from 0: edges, by their ends. Those that touch do so for a path of valid_path at
- * least, as long as the closest point of a vertex stays on its feature. */
+ * least, as long as the closest point of a vertex stays on its feature. One struct for vertices and
+ * edges, so that forces need not know which they have. */
 struct poly_geometry4 {
     brc_lanes n[3];   /* unit, from a to b */
     brc_lanes x[3];   /* middle between the two closest points */
@@ -56,7 +59,8 @@ BRC_LANES_INLINE void poly_geometry_lane(struct poly_geometry *one, const struct
 }
 
 /* Overlap and normal for the distance s of the closest points, that on b being s out from that on a
- * with sign 1, the other way round with -1. Returns where they touch. */
+ * with sign 1, the other way round with -1. Returns where they touch. Signed, so that what has
+ * passed a plane is still pushed out the way it came in. */
 BRC_LANES_INLINE brc_mask poly_overlap(struct poly_geometry4 *t, brc_lanes s,
                                        const brc_lanes out[3], brc_lanes sign,
                                        double contact_distance)
@@ -66,6 +70,7 @@ BRC_LANES_INLINE brc_mask poly_overlap(struct poly_geometry4 *t, brc_lanes s,
     return brc_lanes_less(s, brc_lanes_all(contact_distance)); /* eq:gt12:2 */
 }
 
+/* What `closed` and `strict` have always, and the others where nothing lowers it. */
 BRC_LANES_INLINE void poly_full_weight(struct poly_geometry4 *t)
 {
     t->fades = (brc_mask){0};
@@ -85,7 +90,8 @@ BRC_LANES_INLINE void poly_hide_apart(struct poly_geometry4 *t, brc_mask touches
     poly_mask3(t->c, touches, t->c);
 }
 
-/* Rises from 0 at x <= 0 to 1 at x >= 1 with continuous slope. */
+/* Rises from 0 at x <= 0 to 1 at x >= 1 with continuous slope. A slope that jumped would make the
+ * force jump, which is minus the gradient of the energy, the weight included. */
 BRC_LANES_INLINE brc_lanes poly_smooth(brc_lanes x, brc_lanes *slope)
 {
     x = brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), brc_lanes_all(1));
@@ -122,7 +128,8 @@ BRC_LANES_INLINE void poly_fading_begin(struct poly_fading *f)
 }
 
 /* One more vertex of the other core, from which v is at r; nothing where it is not near. Its factor
- * is 0 where the two overlap by themselves, 1 from sqrt(5) R on. */
+ * is 0 where the two overlap by themselves, 1 from sqrt(5) R on. Product and gradient grow together
+ * by the rule for products, in the order of the vertices. */
 BRC_LANES_INLINE void poly_fading_add(struct poly_fading *f, const brc_lanes r[3], brc_mask is_near,
                                       const struct poly_lengths *len)
 {
@@ -202,7 +209,9 @@ BRC_LANES_INLINE brc_lanes poly_clamp(brc_lanes x, brc_lanes high)
     return brc_lanes_min(brc_lanes_max(x, brc_lanes_all(0)), high);
 }
 
-/* Closest points of the closed edges, s and t along them. */
+/* Closest points of the closed edges, s and t along them. The closest point on one line, cut to its
+ * edge; then the closest to that on the other edge, cut; then the first once more. For two segments
+ * that is the end of it. */
 BRC_LANES_INLINE void poly_closest_on_edges(brc_lanes *s, brc_lanes *t,
                                             const struct poly_crossings *x)
 {
@@ -220,6 +229,7 @@ BRC_LANES_INLINE brc_lanes poly_edge_distance(brc_lanes r[3], const struct poly_
     return brc_lanes_sqrt(brc_lanes_dot(r, r)); /* eq:gt12:1 */
 }
 
+/* Of closed edges: a bound for every rule, as none has springs at a greater distance. */
 BRC_LANES_INLINE brc_lanes poly_edge_gap(const struct poly_crossings *x, double contact_distance)
 {
     brc_lanes s, t, r[3];
@@ -244,7 +254,8 @@ BRC_LANES_INLINE brc_lanes poly_path_to_end(const struct poly_crossings *x, brc_
     return out / (brc_lanes_sqrt(x->sin2) + (far + skin) / reach);
 }
 
-/* Relative path that may bring both closest points inside their edges. */
+/* Relative path that may bring both closest points inside their edges. The largest of the four
+ * ends' bounds: as long as one of them holds, the pair cannot cross. */
 BRC_LANES_INLINE brc_lanes poly_path_to_inside(const struct poly_crossings *x, brc_lanes reach,
                                                double skin)
 {
@@ -301,7 +312,8 @@ BRC_LANES_INLINE void poly_weigh_crossing(struct poly_geometry4 *t, const struct
     poly_axpy3(t->c, 0.5 * d, gn);
 }
 
-/* Edges that cross, with both closest points inside. Returns where they touch. */
+/* Edges that cross, with both closest points inside. Returns where they touch. A distance below
+ * minus that of contact is no contact: edges so far past each other belong to other features. */
 BRC_LANES_INLINE brc_mask poly_crossing_geometry(struct poly_geometry4 *t,
                                                  const struct poly_lengths *len,
                                                  const struct poly_crossings *x, brc_mask inside,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the loop over contacts does four at a time. Each kernel is written once, with constant
- * options, and compiled for each instruction set by the files that include this one. */
+ * options, and compiled for each instruction set by the files that include this one. Options are
+ * arguments that are literal where they are called; files of the folder know the kernels by their
+ * tables alone (struct poly_kernels). */
 #ifndef POLY_KERNELS_INC_H
 #define POLY_KERNELS_INC_H
 
@@ -13,7 +15,8 @@
 /* --- sums of contacts
  * ----------------------------------------------------------------------------- */
 
-/* The points' sums of a group's contacts. */
+/* The points' sums of a group's contacts. Sums are kept contact by contact, since points add to
+ * whichever contact is theirs; four contacts side by side are their transpose. */
 BRC_LANES_INLINE void poly_sums_of_four(brc_lanes r[POLY_SUMS], const struct poly_batch *batch,
                                         int32_t four, int n)
 {
@@ -55,7 +58,9 @@ BRC_LANES_INLINE void poly_works_of_four(struct poly_batch *batch, struct poly_c
         g->work_viscous = poly_work(columns->viscous_old, sticky, g, row, dt);
 }
 
-/* Forces and moments of the contacts of a group, and what else they need. */
+/* Forces and moments of the contacts of a group, and what else they need. Where contacts may be
+ * linearised, one work is booked for all that acts, since the tangent does not tell bond and
+ * springs apart; otherwise each source has its own. */
 BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, const bool ledger,
                                        const bool viscous, const bool linearised)
 {
@@ -154,6 +159,7 @@ __attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_li
     return poly_list_all(ctx, l, p, rule, skin, allowance);
 }
 
+/* Without `closed`, whose springs change all the time, and without viscosity. */
 static struct poly_loop poly_linearised_loop(const struct poly_params *p, bool friction,
                                              bool ledger)
 {
@@ -187,6 +193,7 @@ static struct poly_loop poly_literal_loop(const struct poly_params *p, bool fric
                               .finish = finishes[viscous][ledger]};
 }
 
+/* Platens have the literal loop in either case. */
 static struct poly_kernels poly_choose_kernels(const struct brc_sim *sim)
 {
     static poly_kernel *const at_platens[2][2] = {{platens, platens_ledger},

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vectors of lanes: four vectors of space side by side. For the laws (geometry.h, contact.h,
- * bond.h) and the loops that use them; knows nothing of contacts. */
+ * bond.h) and the loops that use them; knows nothing of contacts. A vector is three lanes, one for
+ * each component, rather than four numbers of one vector: sums and products of four contacts then
+ * have no empty place and nothing to shuffle. */
 #ifndef POLY_LANES3_H
 #define POLY_LANES3_H
 

@@ -16,7 +16,10 @@ void poly_account_bond(struct poly_batch *batch, int32_t i, double stored)
     batch->energy[i][BRC_ACCOUNT_NORMAL] -= gained;
 }
 
-/* Adds force and moment of a bond, and its slope, to what the tangent moves along. */
+/* Adds force and moment of a bond, and its slope, to what the tangent moves along. Columns are the
+ * answers to the six unit motions of b about the centre of a: three shifts, three turns. A turn
+ * moves the place of the bond by its cross product with the arm; torsion answers to the part of the
+ * turn about the normal alone. */
 static void add_bond(const struct poly_contact4 *g, int lane, double force[6], double (*tangent)[6])
 {
     double n[3], arm[3], moment[3];
@@ -48,7 +51,8 @@ static void add_bond(const struct poly_contact4 *g, int lane, double force[6], d
 
 /* Relative path for which no point that sleeps can touch, `most` at most. That is also one for
  * which no vertex of `strict` leaves its face, since one of its edges comes or goes across the
- * face's then. */
+ * face's then. They stand sorted by when they wake up, so the first that counts ends the search.
+ * Edges that fade are left out: they come and go with a weight that begins at 0 (README.md). */
 static double path_of_sleepers(const struct brc_contacts *c, size_t row, double most)
 {
     const struct poly_contacts *columns = c->model_columns;
@@ -65,13 +69,14 @@ static double path_of_sleepers(const struct brc_contacts *c, size_t row, double 
 
 /* Relative path of a contact before its bond can break, or begin or end to pull: openings change by
  * twice the path at most, strains by that over the strain length, the twist by the path over the
- * reach of b. */
+ * reach of b. A bond that is closed has no tension stiffness and one that is open has: the tangent
+ * has one or the other, so it ends where the opening changes its sign. */
 static double path_of_bond(const struct poly_batch *batch, int32_t i)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
     const struct poly_contacts *columns = batch->contacts->model_columns;
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    double length = *poly_bond_length(columns, (size_t)batch->row[i]);
+    double length = columns->bond[batch->row[i]][POLY_BOND_LENGTH];
     double slope = 2 / (length * p->eps_th), path = 0.5 * fabs(g->opening[i % BRC_LANES]);
     if (p->torsion && p->theta_limit)
         slope += 1 / (batch->sim->bodies.bounding_radius[batch->b[i]] * p->theta_th);
@@ -79,7 +84,7 @@ static double path_of_bond(const struct poly_batch *batch, int32_t i)
 }
 
 /* Relative path for which a contact may be linearised, as far as its acting springs do not matter.
- */
+ * All of it from saved fields of the contact and its bodies, so that a restart decides alike. */
 static double path_left(const struct poly_batch *batch, int32_t i)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
@@ -100,6 +105,9 @@ static bool is_long(const struct poly_batch *batch, int32_t i, double path)
     return path > WORTH_STEPS * batch->four[i / BRC_LANES].path[i % BRC_LANES];
 }
 
+/* Asked before the forces, since the tangent is summed up along with them; what their points have
+ * to say is asked again afterwards (poly_linearise). A contact that fills the work lists by itself
+ * is left out: its points have been worked off in parts. */
 void poly_begin_tangent(struct poly_batch *batch, int32_t i)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
@@ -109,6 +117,8 @@ void poly_begin_tangent(struct poly_batch *batch, int32_t i)
         memset(batch->tangent[i], 0, sizeof batch->tangent[i]);
 }
 
+/* The motion begins at 0 whether the contact is linearised or not: it is also what a contact that
+ * stays literal has moved by its next step. */
 void poly_linearise(struct poly_batch *batch, int32_t i)
 {
     struct brc_sim *sim = batch->sim;

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contacts that are linearised, four at a time: carried along by their tangents until they have
- * used up their path. */
+ * used up their path. The first part of a step; contacts whose path ends here are computed
+ * literally in the rest of it. May not read any point, for that is what linearising saves. */
 #ifndef POLY_LINEARISED_KERNELS_H
 #define POLY_LINEARISED_KERNELS_H
 
 #include "polyhedra/motion_kernels.inc.h"
 
 /* Force on b and its moment about the centre of a of four contacts: what they were, less the
- * tangent times the motion, turned with the pair. */
+ * tangent times the motion, turned with the pair. The turn is taken to first order, so
+ * poly_turns_far ends it early. */
 BRC_LANES_INLINE void poly_tangent_forces(struct poly_wrench4 *w,
                                           const struct poly_contacts *columns,
                                           const struct poly_motion4 *s,
@@ -67,7 +69,9 @@ BRC_LANES_INLINE brc_mask poly_turns_far(const struct poly_batch *batch,
 }
 
 /* Moves four contacts by a step. Returns how many of them are left to do: where some have used up
- * their path, none is moved, and the others come first in i. */
+ * their path, none is moved, and the others come first in i. None is moved, as a store to some
+ * lanes alone would cost all of them; those that stay are taken again with the next ones, so that
+ * no lane's result depends on the others. */
 BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_numbers4 *i, int n,
                                           const bool ledger)
 {
@@ -106,6 +110,8 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
     return 0;
 }
 
+/* The number is written for every contact and counted for those that are linearised, so that
+ * nothing branches. */
 BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const bool ledger)
 {
     const struct brc_contacts *c = batch->contacts;

@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which feature pairs of two cores can touch within a skin: planes, and pairs of edges, are looked
- * at four at a time. Compiled for each instruction set by the files that include this one. */
+ * at four at a time. Compiled for each instruction set by the files that include this one. Called
+ * when the skin of a contact has been used up, and by tests. What is listed is decided by bounds
+ * alone: a feature pair that is left out cannot touch within the skin, whatever the bodies do. */
 #ifndef POLY_LISTING_KERNELS_H
 #define POLY_LISTING_KERNELS_H
 
 #include "polyhedra/pose_kernels.inc.h"
 
+#include "common/base/grow.h"
+
 #include <string.h>
 
-/* One body of a pair as seen from the other. */
+/* One body of a pair as seen from the other. Both sides have the same form, so that vertices and
+ * edges of either are found by one piece of code. */
 struct poly_seen {
     const struct poly_core *own, *other;
     const double (*v)[3]; /* own vertices in space */
@@ -83,7 +88,9 @@ static int poly_list_add_vertex(struct brc_context *ctx, struct poly_list *l, bo
     return poly_list_add(ctx, l, &f);
 }
 
-/* Faces of the other core within reach of a vertex; all of them when it is inside. */
+/* Faces of the other core within reach of a vertex; all of them when it is inside. The faces that
+ * count follow from the rule, so that they are listed by the path to them, not by the plain
+ * distance. */
 static int poly_list_faces(struct brc_context *ctx, struct poly_list *l, const struct poly_seen *s,
                            bool of_b, int32_t v, const struct poly_pair *p, enum poly_rule rule,
                            double skin)
@@ -101,7 +108,8 @@ static int poly_list_faces(struct brc_context *ctx, struct poly_list *l, const s
 }
 
 /* Vertices of the other core (q: of the own one in its frame) that may come within the range where
- * they lower the weight. */
+ * they lower the weight. The range takes in the skin: the list must hold for as long as the contact
+ * does without a new one. */
 static void poly_near_vertices(int32_t near[POLY_NEAR], const struct poly_core *other,
                                const double q[3], double range)
 {
@@ -126,7 +134,8 @@ static void poly_near_vertices(int32_t near[POLY_NEAR], const struct poly_core *
         near[0] = POLY_MANY_NEAR;
 }
 
-/* The face of the other core whose plane vertex v is highest above. */
+/* The face of the other core whose plane vertex v is highest above. It must be one of them, as the
+ * largest height is one of these, to the last bit. */
 static int32_t poly_highest_face(const struct poly_seen *s, int32_t v)
 {
     const double *height = s->height + (size_t)v * s->stride;
@@ -178,6 +187,8 @@ BRC_LANES_INLINE bool poly_edge_is_near(const struct poly_seen *s, const int32_t
     return !brc_lanes_any(~brc_lanes_less(highest, brc_lanes_all(reach)));
 }
 
+/* Middles and half lengths make spheres about the edges, which sort out pairs before any closest
+ * point is computed. */
 BRC_LANES_INLINE void poly_find_edges(struct poly_seen *s, double reach)
 {
     s->n_near = 0;
@@ -255,6 +266,8 @@ BRC_LANES_INLINE int poly_list_edge_pairs(struct brc_context *ctx, struct poly_l
     return 0;
 }
 
+/* Each edge of a against four of b; those whose spheres are near are collected until four pairs are
+ * there, so that the costly part has no empty lanes. */
 BRC_LANES_INLINE int poly_list_edges(struct brc_context *ctx, struct poly_list *l,
                                      const struct poly_seen sides[2], const struct poly_pair *p,
                                      enum poly_rule rule, double skin)
@@ -283,7 +296,8 @@ BRC_LANES_INLINE int poly_list_edges(struct brc_context *ctx, struct poly_list *
 
 /* --- pairs of bodies -------------------------------------------------------------------------- */
 
-/* Takes room for a side from the list's work space, which begins at *next. */
+/* Takes room for a side from the list's work space, which begins at *next. One block for all
+ * arrays, as their lengths are known before the first is filled. */
 static void poly_lay_out(struct poly_seen *s, double **next, int32_t **edge)
 {
     size_t n = (size_t)s->own->n_vertices, edges = poly_whole_lanes(s->own->n_edges);
@@ -304,20 +318,8 @@ static int reserve(struct brc_context *ctx, struct poly_list *l, const struct po
     size_t faces = poly_whole_lanes(p->a.n_faces) + poly_whole_lanes(p->b.n_faces);
     size_t edges = poly_whole_lanes(p->a.n_edges) + poly_whole_lanes(p->b.n_edges);
     size_t n = (size_t)(p->a.n_vertices + p->b.n_vertices) * (4 + faces) + 4 * edges;
-    if (n > l->cap_work) {
-        double *grown = brc_realloc(ctx, l->work, 2 * n, sizeof *grown);
-        if (grown == NULL)
-            return BRC_ERR_MEMORY;
-        l->work = grown;
-        l->cap_work = 2 * n;
-    }
-    if (edges > l->cap_edge) {
-        int32_t *grown = brc_realloc(ctx, l->edge, 2 * edges, sizeof *grown);
-        if (grown == NULL)
-            return BRC_ERR_MEMORY;
-        l->edge = grown;
-        l->cap_edge = 2 * edges;
-    }
+    BRC_GROW(ctx, l->work, l->cap_work, n);
+    BRC_GROW(ctx, l->edge, l->cap_edge, edges);
     return 0;
 }
 

@@ -39,6 +39,8 @@ static void warn_oblique(const struct brc_context *ctx, const struct brc_facets 
                 o.mean_cos, o.soft, o.stiff);
 }
 
+/* What can be told from the numbers alone is refused here, before any memory is taken and any cell
+ * eroded; what erosion finds out is told by erode.c. */
 static int check(struct brc_context *ctx, const void *params, const struct brc_specimen *specimen)
 {
     const struct poly_params *p = params;
@@ -70,11 +72,13 @@ static int create(struct brc_sim *sim, void **state)
     struct poly_state *st = *state = brc_alloc(sim->ctx, 1, sizeof *st);
     if (st == NULL)
         return BRC_ERR_MEMORY;
+    /* Frames and sums are read in whole lanes, of a block whose parts lie on lines of the cache. */
     size_t size = (sizeof *st->batch + 63) / 64 * 64;
     st->batch = aligned_alloc(64, size);
     if (st->batch == NULL)
         BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a batch of rows", size);
     memset(st->batch, 0, size);
+    /* Asked before the value is set, for the header has to say which it was. */
     st->is_scaled = isnan(p->kn);
     poly_scale_measure(&scale, &sim->specimen->facets);
     poly_scale_params(&scale, p);
@@ -126,6 +130,8 @@ static const char *choice(const struct poly_params *p, const char *key, char *bu
     return brc_params_text(brc_params_find(list, key), p, buffer, size);
 }
 
+/* Strain length, area and the rule of features change moduli by factors, so that a run without them
+ * in its header could not be compared with anything. */
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
 {
     const struct poly_params *p = poly_params_of(sim);
@@ -152,6 +158,9 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
         oblique.mean_cos);
 }
 
+/* Contacts with platens have no tangents, sleepers or feature pairs: the fields that are for these
+ * are not saved there (no_platens), by their names in files. There is no after_break: a broken bond
+ * needs no new list, since collision acts between bonded grains, too. */
 const struct brc_model brc_model_polyhedra = {
     .name = "polyhedra",
     .citation = "S.A. Galindo-Torres, D.M. Pedroso, D.J. Williams, L. Li: Breaking processes in "

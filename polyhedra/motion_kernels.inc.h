@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Motion and bonds of the contacts of a batch, four at a time. Included by kernels.inc.h and, for
- * one contact alone, by bond_of_contact.c. */
+ * one contact alone, by bond_of_contact.c. Knows contacts as pairs of bodies with a bond, and no
+ * point of theirs; the frames that it makes are all that points see of the motion. */
 #ifndef POLY_MOTION_KERNELS_H
 #define POLY_MOTION_KERNELS_H
 
@@ -67,7 +68,8 @@ BRC_LANES_INLINE void poly_slip_of_four(struct poly_frame4 *f, const struct poly
     }
 }
 
-/* What b moves relative to a at an arm from the centre of a. */
+/* What b moves relative to a at an arm from the centre of a. Affine in the arm, so that a point
+ * needs a product of matrix and vector and nothing of either body. */
 BRC_LANES_INLINE void poly_slip_at(brc_lanes u[3], const struct poly_frame4 *f,
                                    const brc_lanes arm[3])
 {
@@ -86,7 +88,8 @@ BRC_LANES_INLINE brc_lanes poly_power(const struct poly_wrench4 *w, const struct
     return brc_lanes_dot(w->f, g->dv) - brc_lanes_dot(w->m, g->wa) + brc_lanes_dot(tb, g->wb);
 }
 
-/* Lane i to the frame of contact i. */
+/* Lane i to the frame of contact i. A row for each contact, since a point wants all of one contact,
+ * and its neighbours in the lanes belong to others. */
 BRC_LANES_INLINE void poly_put_frames(double (*to)[POLY_FRAME], struct poly_frame4 *f)
 {
     brc_lanes *part = (brc_lanes *)f;
@@ -175,7 +178,8 @@ struct poly_halves4 {
         none_tb;
 };
 
-/* Constants of the bonds; zero stiffness where there is none. */
+/* Constants of the bonds; zero stiffness where there is none. By zero stiffness and not by a
+ * branch: three of four contacts of a group may be intact. */
 BRC_LANES_INLINE void poly_bond_constants(struct poly_bonds4 *bonds, const struct poly_params *p,
                                           const struct poly_halves4 *halves, brc_mask intact,
                                           const bool torsion)
@@ -292,7 +296,8 @@ BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_con
 }
 
 /* What contacts have used of their skin, `used` since they were looked at last; stable contacts
- * have nothing to decide in this step. */
+ * have nothing to decide in this step. One contact after the other, since these columns are read at
+ * scattered places and hardly anything is computed with them. */
 BRC_LANES_INLINE void poly_skins_of_four(struct poly_batch *batch, struct poly_contact4 *g,
                                          brc_lanes used, int32_t group)
 {
@@ -369,7 +374,9 @@ BRC_LANES_INLINE void poly_motion_add_step(struct poly_motion4 *s, const struct 
 }
 
 /* Makes the frames of contacts that are computed literally those of the motion since they were
- * computed last: slip and slope are displacements. Returns the path of that motion. */
+ * computed last: slip and slope are displacements. Returns the path of that motion. Tangential
+ * springs have stood still while their contact was moved by its tangent: they get all of its motion
+ * in one increment now. */
 BRC_LANES_INLINE brc_lanes poly_frames_since(const struct poly_batch *batch, struct poly_frame4 *f,
                                              const struct poly_contact4 *g,
                                              const struct poly_numbers4 *i)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Core vertices of grains at platens: the loop has four, energy and springs one alone, in all
- * lanes. a is the grain, b the platen, which has no rounding: the contact distance is R. */
+ * lanes. a is the grain, b the platen, which has no rounding: the contact distance is R. Vertices
+ * alone: a plane touches a convex body at its vertices first, and on a round surface edges and
+ * faces between them are not seen. */
 #ifndef POLY_PLATEN_GEOMETRY_H
 #define POLY_PLATEN_GEOMETRY_H
 
@@ -30,7 +32,8 @@ BRC_LANES_INLINE void poly_platen_heights(brc_lanes *s, brc_lanes out[3], const 
 }
 
 /* Vertices by their numbers in st->global_vertices, at platens by their bodies; also of what would
- * touch if R were larger by skin. Returns where they touch. */
+ * touch if R were larger by skin. Returns where they touch. A platen pushes the vertex out along
+ * its own normal there, so sign is -1: the vertex belongs to a. */
 BRC_LANES_INLINE brc_mask poly_platen_geometry(struct poly_geometry4 *t, const struct brc_sim *sim,
                                                const struct poly_state *st,
                                                const int32_t vertex[BRC_LANES],

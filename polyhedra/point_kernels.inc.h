@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The points of a batch's lists, four at a time: their geometry from items, then forces and springs
- * into the sums of their contacts. */
+ * into the sums of their contacts. What points are is known by their items alone; which contact
+ * they belong to is felt only where their sums are added. */
 #ifndef POLY_POINT_KERNELS_H
 #define POLY_POINT_KERNELS_H
 
@@ -23,7 +24,8 @@ BRC_LANES_INLINE void poly_distance_to_planes(brc_lanes *s, brc_lanes n[3],
     *s = brc_lanes_dot(n, v) - p[3];
 }
 
-/* Distance s and outward normal n of v from edges or vertices. */
+/* Distance s and outward normal n of v from edges or vertices. Of an edge the part along it is
+ * taken off; a vertex, both ends of which are one, has no direction, and the mask keeps 0/0 out. */
 BRC_LANES_INLINE void poly_distance_to_edges(brc_lanes *s, brc_lanes n[3],
                                              const struct poly_batch *batch, const brc_lanes v[3],
                                              const int32_t *const item[])
@@ -78,6 +80,7 @@ BRC_LANES_INLINE void poly_fade_vertices(struct poly_geometry4 *t, const struct 
     poly_weigh_vertex(t, v, sign, &f);
 }
 
+/* As many turns of fading as the vertex with most near vertices needs. */
 BRC_LANES_INLINE void poly_vertices_of_tasks(struct poly_geometry4 *t,
                                              const struct poly_batch *batch,
                                              const struct poly_task *task, const bool flat)
@@ -105,6 +108,8 @@ BRC_LANES_INLINE void poly_vertices_of_tasks(struct poly_geometry4 *t,
     poly_hide_apart(t, touches);
 }
 
+/* The side on which edges have met is remembered with the point: without it, edges that have gone
+ * through each other would pull. */
 BRC_LANES_INLINE void poly_edges_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
                                           const struct poly_task *task, const enum poly_rule rule)
 {
@@ -148,7 +153,9 @@ BRC_LANES_INLINE void poly_platens_of_tasks(struct poly_geometry4 *t,
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
-/* Adds the stiffness of four points to the tangents of their contacts. */
+/* Adds the stiffness of four points to the tangents of their contacts. Columns of 6 for shifts and
+ * turns of b about the centre of a. A shift d of the contact gives a d; a turn moves it by the
+ * cross product with the arm, and changes the weight by its couple c besides. */
 BRC_LANES_INLINE void poly_add_tangents(struct poly_batch *batch, const int32_t row[BRC_LANES],
                                         const struct poly_geometry4 *t, const brc_lanes xi[3],
                                         brc_mask slips, const brc_lanes arm[3], const bool friction)
@@ -231,7 +238,8 @@ BRC_LANES_INLINE brc_mask poly_forces_of_points(
     return slips & touches;
 }
 
-/* Points that begin to touch, and those that are apart. */
+/* Points that begin to touch, and those that are apart. Most points that are awake touch as they
+ * did before, so one test of all lanes ends it. */
 BRC_LANES_INLINE void poly_find_changes(struct poly_batch *batch, const struct poly_task *task,
                                         int32_t n, const struct poly_geometry4 *t, brc_lanes old)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The points of a batch (batch.h): what their touches are computed from, which are listed, and what
- * becomes of those that are apart. */
+ * becomes of those that are apart. Called by forces.c for each contact; the kernels read what is
+ * set here. Which point goes where may depend on its pose alone, or bits would hang on the history
+ * of lists. */
 #include "polyhedra/motion_kernels.inc.h"
 
 #include <stdlib.h>
@@ -28,7 +30,8 @@ static void add_task(struct poly_batch *batch, int list, int32_t i, size_t p)
     batch->task[list][batch->n_tasks[list]++] = (struct poly_task){.row = i, .point = (int32_t)p};
 }
 
-/* A point whose geometry is known: it touches, or how far it is apart. */
+/* A point whose geometry is known: it touches, or how far it is apart. In the same form as the
+ * kernels' own geometry, so that forces, springs and sums have one way for all points. */
 static void add_known(struct poly_batch *batch, int32_t i, size_t p, bool touches,
                       const struct poly_geometry *t)
 {
@@ -48,7 +51,8 @@ static void add_known(struct poly_batch *batch, int32_t i, size_t p, bool touche
 }
 
 /* A point by the literal functions. True when it is a vertex whose closest feature is sure now:
- * then it belongs in the list of that feature. */
+ * then it belongs in the list of that feature. The margin of `closed` is 0 always: which faces
+ * count changes too easily to be remembered. */
 static bool find_literally(struct poly_batch *batch, int32_t i, size_t p)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
@@ -69,7 +73,8 @@ static bool find_literally(struct poly_batch *batch, int32_t i, size_t p)
     return false;
 }
 
-/* What the touch of edges is computed from, as item. */
+/* What the touch of edges is computed from, as item. Reach goes along in the item, since it belongs
+ * to the pair and four edges may be of four pairs. */
 static void set_edges(const struct poly_batch *batch, int32_t i, size_t p)
 {
     const struct poly_shapes *s = &batch->st->shapes;
@@ -88,7 +93,9 @@ static void set_edges(const struct poly_batch *batch, int32_t i, size_t p)
     memcpy(item + POLY_ITEM_REACH, &reach, sizeof reach);
 }
 
-/* Numbers of the vertices near, of those from first to end. Returns what the item says of them. */
+/* Numbers of the vertices near, of those from first to end. Returns what the item says of them.
+ * Numbers of all vertices of the core would not fit the item; they follow each other, so the first
+ * one and their number are enough. */
 static int32_t set_near(int32_t *item, const int32_t near[POLY_NEAR], int32_t first, int32_t end)
 {
     int32_t n = 0;
@@ -101,7 +108,9 @@ static int32_t set_near(int32_t *item, const int32_t near[POLY_NEAR], int32_t fi
     return n << POLY_NEAR_SHIFT;
 }
 
-/* What the touch of a vertex at a sure place is computed from, as item. */
+/* What the touch of a vertex at a sure place is computed from, as item. An edge by its two ends, a
+ * vertex by itself twice: one kernel does both, and for a vertex the direction along the edge is
+ * 0. */
 static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool merged)
 {
     const struct poly_shapes *s = &batch->st->shapes;
@@ -186,7 +195,8 @@ static void release_spring(struct poly_batch *batch, int32_t i, size_t p)
     struct brc_sim *sim = batch->sim;
     const struct poly_points *points = batch->contacts->point_columns;
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    double *xi = poly_xi(points, p), part = 0.5 * batch->law.kt * *poly_weight(points, p), du[3];
+    double *xi = points->spring[p] + POLY_XI,
+           part = 0.5 * batch->law.kt * points->spring[p][POLY_WEIGHT], du[3];
     if (BRC_OPTION(sim->run.ledger)) {
         struct poly_frame4 f;
         brc_lanes u[3], middle[3];
@@ -204,7 +214,8 @@ static void release_spring(struct poly_batch *batch, int32_t i, size_t p)
 }
 
 /* A point that does not touch: its spring is released, and it goes to sleep when the path that it
- * is free for is worth it. */
+ * is free for is worth it. Its closest feature stays as it is, to begin the next walk at. At
+ * platens nobody sleeps (list_at_platen). */
 static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
 {
     int32_t i = apart->row;
@@ -212,9 +223,9 @@ static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
     const struct poly_contacts *columns = batch->contacts->model_columns;
     struct poly_points *points = batch->contacts->point_columns;
     size_t row = (size_t)batch->row[i];
-    if (*poly_weight(points, p) > 0)
+    if (points->spring[p][POLY_WEIGHT] > 0)
         release_spring(batch, i, p);
-    *poly_weight(points, p) = 0;
+    points->spring[p][POLY_WEIGHT] = 0;
     points->active[p] = 0;
     if (batch->is_platens)
         return;
@@ -248,7 +259,8 @@ void poly_work_off(struct poly_batch *batch)
 }
 
 /* Lists points p to p + n of contact i of the batch; returns the skin left above which their items
- * stay right. */
+ * stay right. In a stable contact every awake point has its item, and the look at each of them is
+ * left out. */
 static double list_part(struct poly_batch *batch, int32_t i, size_t p, size_t n)
 {
     const struct poly_points *points = batch->contacts->point_columns;
@@ -263,7 +275,8 @@ static double list_part(struct poly_batch *batch, int32_t i, size_t p, size_t n)
     return stable_above;
 }
 
-/* All points of a contact with a platen: none sleeps, as they are few and cheap. */
+/* All points of a contact with a platen: none sleeps, as they are few and cheap. Its points may be
+ * worked off in parts: none moves in the table by it. */
 static void list_at_platen(struct poly_batch *batch, int32_t i)
 {
     const struct brc_contacts *c = batch->contacts;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters, fields and private memory of the bonded spheropolyhedra, shared by this folder. */
+/* Parameters, fields and private memory of the bonded spheropolyhedra, shared by this folder.
+ * Included by every file of it that knows a simulation; the laws (geometry.h, contact.h, bond.h) do
+ * without. */
 #ifndef POLY_POLY_H
 #define POLY_POLY_H
 
@@ -68,6 +70,7 @@
          "evaluation=auto|condensed, features=strict|merged, evaluation=condensed or "            \
          "run.regime=quasi_static")
 
+/* In the order of the words of their keys. */
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
 enum poly_area { POLY_AREA_ERODED, POLY_AREA_FACET };
 enum poly_evaluation { POLY_AUTO, POLY_LITERAL, POLY_LINEARISED };
@@ -103,16 +106,6 @@ struct poly_contacts {
     POLY_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED, BRC_COLUMN3_RENAMED)
 };
 
-static inline double *poly_bond_area(const struct poly_contacts *columns, size_t row)
-{
-    return columns->bond[row] + POLY_BOND_AREA;
-}
-
-static inline double *poly_bond_length(const struct poly_contacts *columns, size_t row)
-{
-    return columns->bond[row] + POLY_BOND_LENGTH;
-}
-
 /* Points: feature pairs near enough to touch before the contact is listed anew. */
 #define POLY_POINT_FIELDS(SCALAR, VECTOR, RENAMED)                                         \
     SCALAR(uint8_t, kind, BRC_STATE, "1", "0 vertex of a, 1 vertex of b, 2 edges")         \
@@ -139,21 +132,6 @@ struct poly_points {
     POLY_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED)
 };
 
-static inline double *poly_xi(const struct poly_points *points, size_t p)
-{
-    return points->spring[p] + POLY_XI;
-}
-
-static inline double *poly_normal(const struct poly_points *points, size_t p)
-{
-    return points->spring[p] + POLY_NORMAL;
-}
-
-static inline double *poly_weight(const struct poly_points *points, size_t p)
-{
-    return points->spring[p] + POLY_WEIGHT;
-}
-
 static inline struct poly_feature poly_point(const struct poly_points *points, size_t p)
 {
     struct poly_feature f = {.i = points->i[p], .j = points->j[p], .kind = points->kind[p]};
@@ -161,6 +139,8 @@ static inline struct poly_feature poly_point(const struct poly_points *points, s
     return f;
 }
 
+/* Nothing here is saved: what a restart needs is in the fields, and the rest is derived from
+ * specimen, parameters and poses. */
 struct poly_state {
     struct poly_shapes shapes;
     double (*eroded)[2]; /* m2, of each facet of the specimen: what either grain's core keeps */
@@ -189,6 +169,7 @@ static inline bool poly_is_viscous(const struct brc_sim *sim)
     return sim->run.regime == BRC_DYNAMIC && (p->gn > 0 || p->gt > 0);
 }
 
+/* One question for all who ask, so that kernels and bookkeeping cannot disagree. */
 static inline bool poly_is_linearised(const struct brc_sim *sim)
 {
     const struct poly_params *p = poly_params_of(sim);
@@ -196,7 +177,8 @@ static inline bool poly_is_linearised(const struct brc_sim *sim)
     return BRC_OPTION(p->evaluation == POLY_LINEARISED || (p->evaluation == POLY_AUTO && is_fit));
 }
 
-/* Smaller one of the radii of two cores about their centres. */
+/* Smaller one of the radii of two cores about their centres. By it a relative path of the bodies
+ * bounds how far they turn against each other. */
 static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32_t b)
 {
     return poly_least(sim->bodies.bounding_radius[a], sim->bodies.bounding_radius[b]) -
@@ -204,7 +186,8 @@ static inline double poly_core_reach(const struct brc_sim *sim, int32_t a, int32
 }
 
 /* scale.c: values that are `auto`, from the grains; what is given stays. A specimen without inner
- * facets counts as cubes of the mean volume. */
+ * facets counts as cubes of the mean volume. Measured anew by whoever asks, so that a check before
+ * the run and the run have the same. */
 struct poly_scale {
     double size;           /* m, cube root of the mean volume */
     double area, distance; /* m2, m: mean inner facet, mean distance of the centres over it */
@@ -220,14 +203,15 @@ int poly_update_contacts(struct brc_sim *sim, void *state, const struct brc_neig
 int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t row);
 int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row);
 /* The points of a contact that are awake come first, sorted by feature; then those that sleep,
- * sorted by when they wake up. Brings in those that its skin left wakes. */
+ * sorted by when they wake up. Brings in those that its skin left wakes. So that the loop runs over
+ * awake points without a test, and one look at the first sleeper tells whether any wakes. */
 void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
 /* A point that is awake and does not touch sleeps until its contact has no more skin left than
  * `sleep`. */
 void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
 
 /* points.c: lists the points of contact i of the batch that may touch; computes all that is listed.
- */
+ * May work off what is listed when the lists are full. */
 void poly_list_points(struct poly_batch *batch, int32_t i);
 void poly_work_off(struct poly_batch *batch);
 
@@ -274,10 +258,15 @@ void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct p
 /* A feature contact that acts. */
 struct poly_active {
     int32_t a, b;      /* bodies */
-    size_t row, point; /* of sim->pairs */
+    size_t row, point; /* of its set of contacts */
     struct poly_feature feature;
     struct poly_geometry geometry;
 };
+/* Visits the feature contacts of contact `row` of c (sim->pairs or sim->platens) that touch, or
+ * would touch if the contact distance were larger by skin [m]; after poly_pose_bodies. */
+void poly_each_touch(const struct brc_sim *sim, const struct poly_state *st,
+                     const struct brc_contacts *c, size_t row, double skin,
+                     void (*visit)(void *user, const struct poly_active *active), void *user);
 /* Visits the active feature contacts of all grain pairs, computed from the present poses. */
 void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
                       void (*visit)(void *user, const struct poly_active *active), void *user);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices and planes of all cores in space, four at a time. */
+/* Vertices and planes of all cores in space, four at a time. Called once a step, before forces.
+ * Knows cores and poses, not who touches whom. */
 #ifndef POLY_POSE_KERNELS_H
 #define POLY_POSE_KERNELS_H
 
@@ -17,7 +18,9 @@ BRC_LANES_INLINE void poly_to_space4(brc_lanes out[3], const brc_lanes r[9], con
 }
 
 /* Where the four of a range that begin at i are: the last ones are the last four once more. A core
- * has four vertices and faces at least. */
+ * has four vertices and faces at least. They are computed twice, to the same bits; a remainder done
+ * one by one would be a second piece of code, and padded arrays would change the numbers of
+ * features. */
 BRC_LANES_INLINE size_t poly_whole_four(size_t i, size_t end)
 {
     return i + BRC_LANES <= end ? i : end - BRC_LANES;
@@ -37,6 +40,8 @@ BRC_LANES_INLINE void poly_pose_vertices(const struct poly_state *st,
     }
 }
 
+/* A plane in space is its turned normal and n . x: the offset in the body frame plus that of the
+ * centre. */
 BRC_LANES_INLINE void poly_pose_planes(const struct poly_state *st,
                                        const struct poly_body_pose4 *pose, size_t first, size_t end)
 {

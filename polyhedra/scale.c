@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lengths and stiffnesses that follow from the grains, so that one set of values serves specimens
- * of every size. */
+ * of every size. Called before a run is checked and when its state is made, so that both see the
+ * same numbers; may not know cores, which are eroded by what is found here. */
 #include "polyhedra/poly.h"
 
 #include <math.h>
 
+/* Facets that carry no contact are left out of the means: a stiffness by them would be that of no
+ * contact. */
 void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facets)
 {
     double volume = 0, area = 0, distance = 0, d[3];

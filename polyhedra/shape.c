@@ -3,6 +3,7 @@
  * where an index would do: cores have some tens of edges. */
 #include "polyhedra/shape.h"
 
+#include "common/base/grow.h"
 #include "common/geometry/vec.h"
 
 #include <gsl/gsl_eigen.h>
@@ -27,58 +28,33 @@ void poly_shapes_free(struct poly_shapes *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Room for n items behind *array; the capacity doubles. */
-static int reserve(struct brc_context *ctx, void *array, size_t *cap, size_t n, size_t size)
+/* Room for one more body. Edges are counted as half of the sides, since each lies between two
+ * faces; whether that is so is found when they are filled. */
+static int reserve(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid)
 {
-    void **batch = array;
-    if (n <= *cap)
-        return 0;
-    size_t wanted = *cap * 2 > n ? *cap * 2 : n + 16;
-    void *grown = brc_realloc(ctx, *batch, wanted, size);
-    if (grown == NULL)
-        return BRC_ERR_MEMORY;
-    *batch = grown;
-    *cap = wanted;
+    size_t n = s->n, n_sides = solid->first[solid->n_faces];
+    BRC_GROW(ctx, s->vertex_first, s->cap[0], n + 2);
+    BRC_GROW(ctx, s->edge_first, s->cap[1], n + 2);
+    BRC_GROW(ctx, s->face_first, s->cap[2], n + 2);
+    BRC_GROW(ctx, s->side_first, s->cap[3], n + 2);
+    if (n == 0)
+        s->vertex_first[0] = s->edge_first[0] = s->face_first[0] = s->side_first[0] = 0;
+    size_t n_vertices = s->vertex_first[n] + solid->n_vertices;
+    size_t n_edges = s->edge_first[n] + n_sides / 2;
+    BRC_GROW(ctx, s->vertex, s->cap[4], n_vertices);
+    BRC_GROW(ctx, s->end, s->cap[5], n_edges);
+    BRC_GROW(ctx, s->edge, s->cap[6], n_edges);
+    BRC_GROW(ctx, s->face, s->cap[7], s->face_first[n] + solid->n_faces);
+    BRC_GROW(ctx, s->side, s->cap[8], s->side_first[n] + n_sides);
+    BRC_GROW(ctx, s->link, s->cap[9], s->side_first[n] + n_sides);
+    BRC_GROW(ctx, s->star_first, s->cap[10], n_vertices + n + 1);
+    BRC_GROW(ctx, s->star, s->cap[11], 2 * n_edges);
     return 0;
-}
-
-static int reserve_bodies(struct brc_context *ctx, struct poly_shapes *s)
-{
-    size_t **index[] = {&s->vertex_first, &s->edge_first, &s->face_first, &s->side_first};
-    size_t cap = s->cap;
-    for (int i = 0; i < 4; i++) {
-        cap = s->cap;
-        BRC_TRY(reserve(ctx, index[i], &cap, s->n + 2, sizeof(size_t)));
-        if (s->n == 0)
-            (*index[i])[0] = 0;
-    }
-    s->cap = cap;
-    return 0;
-}
-
-static int reserve_features(struct brc_context *ctx, struct poly_shapes *s, size_t n_vertices,
-                            size_t n_sides, size_t n_faces)
-{
-    size_t v = s->vertex_first[s->n] + n_vertices, e = s->edge_first[s->n] + n_sides / 2;
-    size_t f = s->face_first[s->n] + n_faces, d = s->side_first[s->n] + n_sides;
-    size_t cap = s->cap_vertices;
-    BRC_TRY(reserve(ctx, &s->star_first, &cap, v + s->n + 1, sizeof(int32_t)));
-    cap = s->cap_vertices;
-    BRC_TRY(reserve(ctx, &s->vertex, &cap, v + s->n + 1, sizeof *s->vertex));
-    s->cap_vertices = cap;
-    cap = s->cap_edges;
-    BRC_TRY(reserve(ctx, &s->star, &cap, e, 2 * sizeof(int32_t)));
-    cap = s->cap_edges;
-    BRC_TRY(reserve(ctx, &s->end, &cap, e, sizeof *s->end));
-    BRC_TRY(reserve(ctx, &s->edge, &s->cap_edges, e, sizeof *s->edge));
-    BRC_TRY(reserve(ctx, &s->face, &s->cap_faces, f, sizeof *s->face));
-    cap = s->cap_sides;
-    BRC_TRY(reserve(ctx, &s->link, &cap, d, sizeof *s->link));
-    return reserve(ctx, &s->side, &s->cap_sides, d, sizeof *s->side);
 }
 
 /* Area vector of a loop (half the sum of cross products) about its first vertex, and the mean of
- * its vertices. */
+ * its vertices. About a vertex and not about the origin, so that no digits are lost where a face is
+ * small beside its distance from there. */
 static void loop_area(const struct poly_solid *solid, size_t face, double area[3], double mean[3])
 {
     size_t first = solid->first[face], n = solid->first[face + 1] - first;
@@ -96,6 +72,9 @@ static void loop_area(const struct poly_solid *solid, size_t face, double area[3
     brc_scale(mean, mean, 1 / (double)n);
 }
 
+/* Callers need not know in which sense a loop runs: the mean of the vertices is inside a convex
+ * body, so that it tells outside from inside. Loops are stored counter-clockwise as seen from
+ * outside, as the outward normals of the sides want them. */
 static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, size_t f,
                       const double middle[3])
 {
@@ -133,25 +112,25 @@ static int32_t side_end(const struct poly_face *face, const struct poly_link *li
     return link[k == last ? face->first : k + 1].v;
 }
 
-/* The side of another face that runs from v1 to v0, or -1. */
-static int32_t find_twin(const struct poly_face *face, size_t n_faces, const struct poly_link *link,
-                         int32_t v0, int32_t v1)
+/* Finds the side of another face that runs the other way, from v1 to v0: the second side of e. On a
+ * closed surface whose faces are all seen from outside, two that meet run along their edge in
+ * opposite senses. */
+static bool find_twin(struct poly_edge *e, const struct poly_face *face, size_t n_faces,
+                      const struct poly_link *link, int32_t v0, int32_t v1)
 {
     for (size_t f = 0; f < n_faces; f++)
         for (int32_t k = face[f].first; k < face[f].first + face[f].n_sides; k++)
-            if (link[k].v == v1 && side_end(&face[f], link, k) == v0)
-                return k;
-    return -1;
+            if (link[k].v == v1 && side_end(&face[f], link, k) == v0) {
+                e->side[1] = k;
+                e->face[1] = (int32_t)f;
+                return true;
+            }
+    return false;
 }
 
-static int32_t face_of_side(const struct poly_face *face, int32_t side)
-{
-    int32_t f = 0;
-    while (side >= face[f].first + face[f].n_sides)
-        f++;
-    return f;
-}
-
+/* An edge gets its number when the first of its sides is met. A side without a twin is a hole in
+ * the surface, a twin that has its edge already is where three faces meet: neither is the surface
+ * of a body, and walks over it might not end. */
 static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
                       const struct poly_solid *solid)
 {
@@ -160,34 +139,32 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
     int32_t(*end)[2] = s->end + s->edge_first[s->n];
     struct poly_edge *edge = s->edge + s->edge_first[s->n];
     int32_t n_sides = (int32_t)solid->first[solid->n_faces], n_edges = 0;
-    for (int32_t k = 0; k < n_sides; k++) {
+    for (int32_t k = 0, f = 0; k < n_sides; k++) {
+        f += k == face[f].first + face[f].n_sides;
         if (link[k].edge >= 0)
             continue;
-        int32_t f = face_of_side(face, k);
         int32_t v0 = link[k].v, v1 = side_end(&face[f], link, k);
-        int32_t twin = find_twin(face, solid->n_faces, link, v0, v1);
-        if (twin < 0 || link[twin].edge >= 0 || n_edges >= n_sides / 2)
+        struct poly_edge e = {.side = {k}, .face = {f}};
+        if (!find_twin(&e, face, solid->n_faces, link, v0, v1) || link[e.side[1]].edge >= 0 ||
+            n_edges >= n_sides / 2)
             BRC_FAIL(
                 ctx, BRC_ERR_GEOMETRY,
                 "body %zu: edge %d-%d does not join exactly two faces: not a closed polyhedron",
                 s->n, v0, v1);
-        struct poly_edge *e = edge + n_edges;
+        edge[n_edges] = e;
         end[n_edges][0] = v0;
         end[n_edges][1] = v1;
-        e->side[0] = k;
-        e->side[1] = twin;
-        e->face[0] = f;
-        e->face[1] = face_of_side(face, twin);
         double along[3];
         brc_sub(along, solid->vertex[v1], solid->vertex[v0]);
         if (!(brc_norm2(along) > 0))
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "body %zu: edge %d-%d has no length", s->n, v0, v1);
-        link[k].edge = link[twin].edge = n_edges++;
+        link[k].edge = link[e.side[1]].edge = n_edges++;
     }
     s->edge_first[s->n + 1] = s->edge_first[s->n] + (size_t)n_edges;
     return 0;
 }
 
+/* Edges by vertex, since a walk leaves a vertex along one of its edges. */
 static void fill_star(struct poly_shapes *s, size_t n_vertices)
 {
     size_t n_edges = s->edge_first[s->n + 1] - s->edge_first[s->n];
@@ -208,8 +185,7 @@ int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct
 {
     size_t n_sides = solid->first[solid->n_faces];
     double middle[3] = {0, 0, 0};
-    BRC_TRY(reserve_bodies(ctx, s));
-    BRC_TRY(reserve_features(ctx, s, solid->n_vertices, n_sides, solid->n_faces));
+    BRC_TRY(reserve(ctx, s, solid));
     double(*vertex)[3] = s->vertex + s->vertex_first[s->n];
     for (size_t v = 0; v < solid->n_vertices; v++) {
         brc_copy(vertex[v], solid->vertex[v]);
@@ -235,7 +211,9 @@ double poly_shapes_reach(const struct poly_shapes *s, size_t body)
     return reach;
 }
 
-/* Unit quaternion of a rotation matrix, by its largest component. */
+/* Unit quaternion of a rotation matrix, by its largest component. The largest one is 1/2 at least,
+ * so that the divisions lose nothing; with a fixed choice the root of a small difference would
+ * stand below them. */
 static void quat_from_matrix(double q[4], double m[3][3])
 {
     double trace = m[0][0] + m[1][1] + m[2][2];
@@ -274,9 +252,12 @@ int poly_principal(struct brc_context *ctx, const double inertia[3][3], double m
     gsl_eigen_symmv_free(work);
     if (code != GSL_SUCCESS)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "principal axes: %s", gsl_strerror(code));
+    /* Ascending, so that which axis comes first follows from the grain alone, not from how the
+     * solver went about it. */
     gsl_eigen_symmv_sort(&values.vector, &out.matrix, GSL_EIGEN_SORT_VAL_ASC);
     brc_copy(moment, value);
-    /* columns are axes: right-handed by the third */
+    /* columns are axes: right-handed by the third Eigenvectors have no sense, so the solver's three
+     * may be a reflection, which is no orientation. */
     double x[3] = {axes[0], axes[3], axes[6]}, y[3] = {axes[1], axes[4], axes[7]};
     brc_cross(cross, x, y);
     for (int i = 0; i < 3; i++)

@@ -26,7 +26,8 @@ struct vgcm_motion {
     brc_lanes du[VGCM_N_MOTION]; /* increments of the generalised displacement */
 };
 
-/* Columns of four contacts to and from lanes. */
+/* Columns of four contacts to and from lanes. A load of four neighbours where they follow each
+ * other, as most elastic contacts do; else each from its own place. */
 VGCM_INLINE brc_lanes vgcm_at(const double *x, const struct vgcm_index4 *r)
 {
     const int32_t *i = r->at;
@@ -91,7 +92,9 @@ VGCM_INLINE void vgcm_frame_turn(brc_lanes s1[3], const brc_lanes s[3], const br
         s1[k] = (1 - phi * phi / 2) * tilted[k] + (phi - phi * phi * phi * (1.0 / 6)) * q[k];
 }
 
-/* Frames and increments of four contacts over the step that has just been made. */
+/* Frames and increments of four contacts over the step that has just been made. Positions are those
+ * at the end of the step and velocities those by which they came there, so that all of it is known
+ * without the positions before. */
 VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct brc_contacts *c,
                                 const struct vgcm_index4 *index, double dt, struct vgcm_motion *m)
 {
@@ -182,7 +185,7 @@ VGCM_INLINE brc_lanes vgcm_force_work(const brc_lanes f[VGCM_N_MOTION],
            f[VGCM_TWIST] * u[VGCM_TWIST];
 }
 
-/* Twice the energy of affine points with the field u. */
+/* Twice the energy of affine points with the field u.  */
 VGCM_INLINE brc_lanes vgcm_energy_affine(brc_lanes kn, brc_lanes ks,
                                          const brc_lanes m[VGCM_N_MOMENTS],
                                          const brc_lanes u[VGCM_N_MOTION])
@@ -197,7 +200,9 @@ VGCM_INLINE brc_lanes vgcm_energy_affine(brc_lanes kn, brc_lanes ks,
     return kn * normal + ks * shear;
 }
 
-/* Forces on b and moments about both centres of the generalised forces. */
+/* Forces on b and moments about both centres of the generalised forces. Moments of a contact about
+ * the two centres by its lever h on a and d - h on b; those of bending are handed on as they
+ * are. */
 VGCM_INLINE void vgcm_force_of(brc_lanes f[3], brc_lanes ta[3], brc_lanes tb[3],
                                const struct vgcm_motion *m, const brc_lanes sum[VGCM_N_MOTION])
 {

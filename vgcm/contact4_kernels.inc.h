@@ -54,6 +54,7 @@ struct vgcm_loop {
     struct vgcm_chunk chunk;
 };
 
+/* On the stack, and written to the columns when it is sure that the contacts keep their phase. */
 struct vgcm_contact4 {
     struct vgcm_index4 index;
     brc_mask live; /* lanes that do not repeat others */
@@ -145,7 +146,8 @@ static void vgcm_queue_sort(struct vgcm_queue *q, const int32_t *np)
         q->contact[i] = sorted[i];
 }
 
-/* Motion of the contacts over the step, and their fields after it. Nothing is written yet. */
+/* Motion of the contacts over the step, and their fields after it. Nothing is written yet. A
+ * contact that leaves its phase is then done again from the same state. */
 VGCM_INLINE void vgcm_contact4_move(const struct vgcm_loop *l, struct vgcm_contact4 *x)
 {
     vgcm_motion_of(&l->sim->bodies, l->c, &x->index, l->sim->dt, &x->m);
@@ -164,8 +166,8 @@ VGCM_INLINE void vgcm_contact4_write(const struct vgcm_loop *l, const struct vgc
 
 /* Adds to the sums of both bodies of contact i: the force on b and the moment on a, each with a
  * fourth value that rides along (0, and the work stored in the bond, which a gets), the moment on
- * b.
- */
+ * b. A body's sum is eight numbers in two lanes of four, so that nothing is left over to be added
+ * by itself. */
 VGCM_INLINE void vgcm_bodies_add(const struct vgcm_loop *l, size_t i, brc_lanes f, brc_lanes ta,
                                  brc_lanes tb)
 {
@@ -252,7 +254,9 @@ static __attribute__((noinline)) void vgcm_chunk_add(struct vgcm_loop *l, size_t
     memset(chunk->acts, VGCM_NOTHING, sizeof chunk->acts);
 }
 
-/* Least opening of points anywhere within the rims, and the largest. */
+/* Least opening of points anywhere within the rims, and the largest. The sum of both bends and not
+ * their root: a bound all the same, without a root. It is asked of every loose contact in each
+ * step. */
 VGCM_INLINE void vgcm_openings(brc_lanes range[2], const brc_lanes u[VGCM_N_MOTION],
                                brc_lanes facet_radius)
 {
@@ -275,7 +279,9 @@ VGCM_INLINE brc_lanes vgcm_viscosity(const struct vgcm_loop *l, const struct vgc
     return c;
 }
 
-/* Adds the viscous part to the generalised forces, and takes note of its dissipation. */
+/* Adds the viscous part to the generalised forces, and takes note of its dissipation. By the mean
+ * of the forces before and after the step, the trapezoid rule that all works in the ledger
+ * follow. */
 VGCM_INLINE void vgcm_contact4_viscous(struct vgcm_loop *l, struct vgcm_contact4 *x,
                                        const brc_lanes viscous[VGCM_N_MOTION])
 {

@@ -33,7 +33,7 @@ VGCM_INLINE void vgcm_points4_viscous(brc_lanes viscous[VGCM_N_MOTION], brc_lane
 
 /* Point j of contact i has just broken: rare, so that it may be slow, and out of the loop. The
  * status of the whole contact is looked up anew, as other points may have broken in the same step.
- */
+ * The mode is that of the larger part of the damage. */
 static void vgcm_event_add(const struct vgcm_loop *l, size_t i, size_t j)
 {
     const struct brc_contacts *c = l->c;
@@ -115,7 +115,9 @@ VGCM_INLINE void vgcm_points4_write(double *const point[BRC_LANES],
         point[k][VGCM_DISSIPATED] += brc_lanes_where(grows, dissipated)[k];
 }
 
-/* Points number k of four contacts. Lanes without such a point work on none, which has no area. */
+/* Points number k of four contacts. Lanes without such a point work on none, which has no area. An
+ * empty point instead of a mask: it has no area, so that it adds nothing to any sum, and what is
+ * written to it is thrown away. */
 VGCM_INLINE void vgcm_points4_step(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x,
                                    struct vgcm_points4 *q, int32_t k, double none[VGCM_N_POINT])
 {
@@ -145,7 +147,8 @@ VGCM_INLINE void vgcm_points4_step(struct vgcm_loop *l, int flags, struct vgcm_c
                              area * w.normal_force * (2 * q->bond[VGCM_HALF_KN]), s, t);
 }
 
-/* Generalised forces of four contacts from the sums over their points. */
+/* Generalised forces of four contacts from the sums over their points. One multiplication a
+ * contact, as the forces of points have been counted per stiffness. */
 VGCM_INLINE void vgcm_points4_sum(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x,
                                   const struct vgcm_points4 *q)
 {

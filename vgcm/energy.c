@@ -7,7 +7,8 @@
 #include "vgcm/contact.h"
 
 /* State of point j of contact i with its forces [N]. A facet keeps no opening and no force of its
- * points: they follow from its six numbers u, as in the loops. */
+ * points: they follow from its six numbers u, as in the loops. Loose: broken and open, which stores
+ * nothing; its slip is not kept (vgcm.h). */
 static struct vgcm_point point_of(const struct brc_contacts *c, const struct vgcm_bond *bond,
                                   size_t i, size_t j, int flags)
 {
@@ -39,13 +40,15 @@ static double shear_energy(const struct vgcm_bond *bond, double area, const stru
     return k > 0 ? (q->fs * q->fs + q->ft * q->ft) / (2 * k) : 0;
 }
 
+/* On the account of a, as the loops book it, so that the two can be compared grain by
+ * grain. */
 static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                      double stored[BRC_N_ACCOUNTS])
 {
     const struct brc_contacts *c = &sim->pairs;
     const struct vgcm_contacts *f = vgcm_columns(c);
     const struct vgcm_points *p = vgcm_point_columns(c);
-    struct vgcm_bond bond = vgcm_bond_of(law, f->kn[i]);
+    struct vgcm_bond bond = vgcm_springs_of(law, f->kn[i]);
     int flags = vgcm_law_flags(law);
     /* affine contacts by their area moments: their points keep no state that could be added up */
     if (f->phase[i] == VGCM_AFFINE) {
@@ -68,6 +71,8 @@ static void add_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     }
 }
 
+/* By the opening that is kept with the point, as the height of a curved surface would have to be
+ * asked anew. */
 static void add_platen(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                        double stored[BRC_N_ACCOUNTS])
 {
@@ -84,22 +89,25 @@ static void add_platen(const struct brc_sim *sim, const struct vgcm_law *law, si
     }
 }
 
-void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law,
-                        double (*of_grain)[BRC_N_ACCOUNTS])
+void vgcm_energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS])
 {
+    const struct vgcm_law *law = &((const struct vgcm_state *)state)->law;
     for (size_t i = 0; i < sim->pairs.n; i++)
         add_pair(sim, law, i, of_grain[sim->pairs.a[i]]);
     for (size_t i = 0; i < sim->platens.n; i++)
         add_platen(sim, law, i, of_grain[sim->platens.a[i]]);
 }
 
-double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact)
+/* By area and not by the number of points: the centroid's stands for a third of the facet. */
+double vgcm_strength_left(const struct brc_sim *sim, const void *state, size_t contact)
 {
+    const struct vgcm_law *law = &((const struct vgcm_state *)state)->law;
+    const struct brc_contacts *c = &sim->pairs;
     const struct vgcm_points *p = vgcm_point_columns(c);
     int flags = vgcm_law_flags(law);
     double whole = 0, left = 0;
-    if (vgcm_columns(c)->phase[contact] ==
-        VGCM_AFFINE) /* no point of it has left the elastic range */
+    /* no point of it has left the elastic range */
+    if (vgcm_columns(c)->phase[contact] == VGCM_AFFINE)
         return 1;
     for (size_t j = (size_t)c->p0[contact], end = j + (size_t)c->np[contact]; j < end; j++) {
         brc_lanes dn = brc_lanes_all(p->law[j][VGCM_DN]), ds = brc_lanes_all(p->law[j][VGCM_DS]);
@@ -111,7 +119,9 @@ double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *l
 }
 
 /* Springs of all points of a facet, those that are broken and open included, as they may close
- * again; that of a sphere contact is near while it does not touch. */
+ * again; that of a sphere contact is near while it does not touch. Along the present normal, that
+ * of the pose, and not the one of the last step: this is called between steps and after a
+ * restart. */
 static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                      struct brc_springs *out)
 {
@@ -140,6 +150,7 @@ static int list_pair(const struct brc_sim *sim, const struct vgcm_law *law, size
     return 0;
 }
 
+/* A grip has no shear: it holds along the normal alone. */
 static int list_platen(const struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                        struct brc_springs *out)
 {
@@ -167,9 +178,9 @@ static int list_platen(const struct brc_sim *sim, const struct vgcm_law *law, si
     return 0;
 }
 
-int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
-                      struct brc_springs *out)
+int vgcm_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
 {
+    const struct vgcm_law *law = &((const struct vgcm_state *)state)->law;
     for (size_t i = 0; i < sim->pairs.n; i++)
         BRC_TRY(list_pair(sim, law, i, out));
     for (size_t i = 0; i < sim->platens.n; i++)

@@ -18,7 +18,9 @@
 /* ---- affine and loose contacts -----------------------------------------------------------------
  */
 
-/* Whether each point of contact i stays within its strengths under the affine field u. */
+/* Whether each point of contact i stays within its strengths under the affine field u. The last
+ * point is repeated in lanes that are left over. A negative limit counts as a failure by itself,
+ * since its square would not. */
 static bool vgcm_points_stay_elastic(const struct vgcm_loop *l, size_t i,
                                      const double u[VGCM_N_MOTION])
 {
@@ -74,7 +76,8 @@ VGCM_INLINE brc_mask vgcm_affine_fails(const struct vgcm_loop *l, const struct v
     return fails;
 }
 
-/* Where some point of a loose contact may close. */
+/* Where some point of a loose contact may close. By the same bound that has let them become
+ * loose. */
 VGCM_INLINE brc_mask vgcm_loose_fails(const struct vgcm_loop *l, const struct vgcm_contact4 *x)
 {
     brc_lanes range[2];
@@ -82,7 +85,8 @@ VGCM_INLINE brc_mask vgcm_loose_fails(const struct vgcm_loop *l, const struct vg
     return x->live & ~brc_lanes_less(brc_lanes_all(0), range[0]);
 }
 
-/* Generalised forces of affine fields. */
+/* Generalised forces of affine fields. From the total field, not from the increment: nothing is
+ * added up that could drift. */
 VGCM_INLINE void vgcm_affine_forces(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x)
 {
     brc_lanes moment[VGCM_N_MOMENTS];
@@ -158,7 +162,8 @@ VGCM_INLINE void vgcm_sphere_viscous(struct vgcm_loop *l, struct vgcm_contact4 *
     vgcm_contact4_viscous(l, x, viscous);
 }
 
-/* Forces of a sphere contact that touches or has just parted. */
+/* Forces of a sphere contact that touches or has just parted. With the stiffness while they overlap
+ * alone: unlike a facet's points, spheres that have parted may never meet again. */
 static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
 {
     struct brc_contacts *c = l->c;
@@ -242,6 +247,8 @@ VGCM_INLINE void vgcm_chunk_begin(struct vgcm_loop *l, int flags, size_t begin, 
     }
 }
 
+/* Spheres come last and one by one. What all of them exert is added at the end, in the order of the
+ * list. */
 VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags, size_t end)
 {
     struct vgcm_queue *q = l->queue;
@@ -272,6 +279,8 @@ VGCM_INLINE void vgcm_chunk_finish(struct vgcm_loop *l, int flags, size_t end)
         vgcm_chunk_add(l, end);
 }
 
+/* By chunks, so that what contacts exert can wait for its turn in the first cache
+ * (contact4_kernels.inc.h). */
 VGCM_INLINE void vgcm_forces_loop(struct brc_sim *sim, const struct vgcm_law *law, const int flags)
 {
     struct vgcm_loop l = {.sim = sim,
@@ -306,6 +315,8 @@ VGCM_LOOP(12)
 VGCM_LOOP(14)
 #undef VGCM_LOOP
 
+/* Places that stay empty are brittle with losses of strength, which needs no loop: without a
+ * softening branch there is nothing to add. */
 #define VGCM_LOOPS                            \
     {                                         \
         {vgcm_forces_0,                       \

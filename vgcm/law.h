@@ -9,7 +9,7 @@
  * force is the one on b, so it points against the slip.
  *
  * Damage by opening dn and by slip ds are displacements past the peak over those at the end. What
- * is left of both strengths is the curve at D = min(1, dn + ds), vgcm_law_strength(D); or, with
+ * is left of both strengths is the curve at D = min(1, dn + ds), vgcm_lanes_strength(D); or, with
  * `damage: strength`, 1 less the losses of the curve at dn and at ds. Tension unloads along the
  * secant, shear elastically. */
 #ifndef VGCM_LAW_H
@@ -47,10 +47,10 @@ struct vgcm_bond {
     const struct vgcm_law *law;
     double kn, ks; /* Pa/m */
     double per_ks; /* m/Pa, 0 without shear stiffness */
-    double u0;     /* m, opening at the tensile strength */
-    double wn, ws; /* m, displacement past the peak at which damage is 1 */
 };
 
+/* For who asks about one point; the loops keep another form (vgcm.h), in which nothing that follows
+ * from the contact is repeated. */
 struct vgcm_point {
     double un;         /* m, opening */
     double fn;         /* N, normal force, tension positive */
@@ -108,7 +108,8 @@ struct vgcm_energy_lanes {
 };
 
 /* beta: strength left at the kink (fraction of the peak); w1: its place past the peak in units of
- * (post-peak energy)/strength. The end follows from the area under the curve. */
+ * (post-peak energy)/strength. The end follows from the area under the curve. By the areas under
+ * both branches, which have to sum to the post-peak energy. */
 static inline void vgcm_law_softening(struct vgcm_law *law, double beta, double w1)
 {
     law->wc = (2 - w1) / beta;
@@ -142,7 +143,9 @@ VGCM_INLINE brc_lanes vgcm_lanes_left(const struct vgcm_law *law, int flags, brc
     return brc_lanes_max(left, brc_lanes_all(0));
 }
 
-/* Where points are not broken. */
+/* Where points are not broken. Where losses of strength add, both parts of the damage may be below
+ * 1, and their sum above it, while some strength is left: so the strength is asked, not the
+ * damage. */
 VGCM_INLINE brc_mask vgcm_lanes_whole(const struct vgcm_law *law, int flags, brc_lanes dn,
                                       brc_lanes ds)
 {
@@ -151,14 +154,11 @@ VGCM_INLINE brc_mask vgcm_lanes_whole(const struct vgcm_law *law, int flags, brc
     return brc_lanes_less(dn + ds, brc_lanes_all(1));
 }
 
+/* The law's part of them alone: whether the ledger is kept and viscous forces act is a matter of
+ * the run (model.c). */
 static inline int vgcm_law_flags(const struct vgcm_law *law)
 {
     return law->is_brittle ? VGCM_BRITTLE : law->adds_losses ? VGCM_LOSSES : 0;
-}
-
-static inline double vgcm_law_strength(const struct vgcm_law *law, double damage)
-{
-    return vgcm_lanes_strength(law, 0, brc_lanes_all(damage))[0];
 }
 
 /* Elastic energies at the peak strengths per unit area [J/m2]. */
@@ -190,27 +190,11 @@ VGCM_INLINE void vgcm_lanes_bond(brc_lanes bond[VGCM_N_BOND], const struct vgcm_
     bond[VGCM_HALF_KS] = 0.5 * ks;
 }
 
-/* Stiffness alone, of contacts without a bond. */
+/* What one contact alone is asked by; vgcm_lanes_bond_of has the rest of its bond. */
 static inline struct vgcm_bond vgcm_springs_of(const struct vgcm_law *law, double kn)
 {
     double ks = law->eta * kn; /* eq:vgcm:29 */
     return (struct vgcm_bond){.law = law, .kn = kn, .ks = ks, .per_ks = ks > 0 ? 1 / ks : 0};
-}
-
-static inline struct vgcm_bond vgcm_bond_of(const struct vgcm_law *law, double kn)
-{
-    struct vgcm_bond bond = vgcm_springs_of(law, kn);
-    brc_lanes all[VGCM_N_BOND];
-    vgcm_lanes_bond(all, law, brc_lanes_all(kn));
-    bond.u0 = all[VGCM_U0][0];
-    bond.wn = 1 / all[VGCM_PER_WN][0];
-    bond.ws = 1 / all[VGCM_PER_WS][0];
-    return bond;
-}
-
-static inline double vgcm_law_damage(const struct vgcm_point *p)
-{
-    return fmin(p->dn + p->ds, 1);
 }
 
 static inline bool vgcm_law_is_whole(const struct vgcm_law *law, int flags, double dn, double ds)
@@ -225,7 +209,9 @@ VGCM_INLINE brc_lanes vgcm_lanes_normal_force(brc_lanes un, brc_lanes secant, br
     return brc_lanes_pick(brc_lanes_less(brc_lanes_all(0), un), weak, un);
 }
 
-/* Shear strength [m] under a normal force. */
+/* Shear strength [m] under a normal force. In displacements, like all forces here, so that friction
+ * has mu / eta in place of mu: the normal force is per kn, the limit per ks. Never below 0, since
+ * it is compared by its square. */
 VGCM_INLINE brc_lanes vgcm_lanes_limit(const struct vgcm_law *law, brc_lanes e0,
                                        brc_lanes normal_force, brc_lanes strength)
 {
@@ -262,8 +248,9 @@ VGCM_INLINE void vgcm_lanes_open(const struct vgcm_law *law, const brc_lanes bon
 }
 
 /* Shear: trial force, then back to the strength, which falls with the slip. In terms of the
- * displacement past the peak the damage grows by excess/(ks ws) on both branches, because
- * ks (slip) = ks ws dD + tau (fall of the strength). Forms the normal force, too. */
+ * displacement past the peak the damage grows by excess/(ks ws) on both branches, because ks (slip)
+ * = ks ws dD + tau (fall of the strength). Forms the normal force, too. Twice through the strength:
+ * slip lowers it, and with it the tension that is left, by which the limit changes again. */
 VGCM_INLINE void vgcm_lanes_slide(const struct vgcm_law *law, const brc_lanes bond[VGCM_N_BOND],
                                   int flags, struct vgcm_point_lanes *p)
 {
@@ -361,41 +348,6 @@ static inline void vgcm_lanes_bond_of(const struct vgcm_bond *bond, brc_lanes al
     vgcm_lanes_bond(lanes, bond->law, brc_lanes_all(bond->kn));
     for (int k = 0; k < VGCM_N_BOND; k++)
         all[k] = brc_lanes_all(lanes[k][0]);
-}
-
-/* One point alone. */
-static inline void vgcm_law_step(const struct vgcm_bond *bond, int flags, double area,
-                                 const double du[3], struct vgcm_point *p, struct vgcm_energy *e)
-{
-    double kn = bond->kn * area, ks = bond->ks * area, inv = ks > 0 ? 1 / ks : 0;
-    double s = p->fs * inv - du[1], t = p->ft * inv - du[2]; /* eq:vgcm:16, eq:vgcm:18 */
-    struct vgcm_point_lanes q = {.dn = brc_lanes_all(p->dn),
-                                 .ds = brc_lanes_all(p->ds),
-                                 .un = brc_lanes_all(p->un + du[0]), /* eq:vgcm:14 */
-                                 .un_old = brc_lanes_all(p->un),
-                                 .damage_old = brc_lanes_all(p->dn + p->ds),
-                                 .s_old = brc_lanes_all(p->fs * inv),
-                                 .t_old = brc_lanes_all(p->ft * inv),
-                                 .s = brc_lanes_all(s),
-                                 .t = brc_lanes_all(t),
-                                 .force2 = brc_lanes_all(s * s + t * t)};
-    struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
-    brc_lanes all[VGCM_N_BOND];
-    vgcm_lanes_bond_of(bond, all);
-    vgcm_lanes_open(bond->law, all, flags, &q);
-    vgcm_lanes_slide(bond->law, all, flags, &q);
-    p->dissipated += vgcm_lanes_account(bond->law, all, flags, brc_lanes_all(area), &q, &sum)[0];
-    p->un = q.un[0];
-    p->fn = kn * q.normal_force[0];
-    p->fs = ks * (q.shear_ratio[0] * s);
-    p->ft = ks * (q.shear_ratio[0] * t);
-    p->dn = q.dn[0];
-    p->ds = q.ds[0];
-    e->bond += sum.bond[0];
-    e->normal += sum.normal[0];
-    e->shear += sum.shear[0];
-    e->damage += sum.damage[0];
-    e->friction += sum.friction[0];
 }
 
 /* Points that are broken from the start: they push and slide with friction, and a platen may hold

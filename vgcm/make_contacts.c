@@ -23,13 +23,15 @@ static double volume_radius(double volume)
     return cbrt(3 * volume / (4 * BRC_PI));
 }
 
-/* Radius that the gap rule counts with: a plain Voronoi cell stands for a sphere of its volume. */
+/* Radius that the gap rule counts with: a plain Voronoi cell stands for a sphere of its volume. A
+ * specimen of spheres has their radii, so that the rule counts the gaps that the packing has. */
 static double size_of(const struct brc_facets *facets, size_t cell)
 {
     double r = facets->radius[cell];
     return r > 0 ? r : volume_radius(facets->volume[cell]);
 }
 
+/* Spheres of plain Voronoi cells do not overlap by it. */
 double vgcm_radius(const struct brc_facets *facets, size_t cell)
 {
     double least = HUGE_VAL, r[3];
@@ -72,6 +74,9 @@ static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params
     return centre_distance(facets, facet) < ra + rb + census->gap;
 }
 
+/* Two passes over the facets, as the rules count in means that have to be known before. The oblique
+ * measure is that of the areas that count: projected ones, where the cells are not a Laguerre
+ * diagram of their centres. */
 void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *params,
                          const struct brc_facets *facets)
 {
@@ -107,7 +112,8 @@ void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *p
 }
 
 /* Adds the facet's points to contact i, at their places (s, t, h) in the contact's frame about
- * origin, with that ratio of their areas. */
+ * origin, with that ratio of their areas. Places ride with the contact from now on, so that they
+ * are kept in its frame, where they never change. */
 static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, size_t facet,
                       const double origin[3], double ratio)
 {
@@ -140,7 +146,9 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
 }
 
 /* Six moments carry the whole contact while it is elastic: its force, energy and stiffness are sums
- * over points of products of their places. Area moments and radius of a contact from its points. */
+ * over points of products of their places. Area moments and radius of a contact from its points.
+ * The radius bounds where a point may be, for the tests of strength and opening that look at no
+ * point (forces_kernels.inc.h). */
 static void set_moments(struct brc_contacts *c, size_t i)
 {
     struct vgcm_contacts *f = vgcm_columns(c);
@@ -161,6 +169,9 @@ static void set_moments(struct brc_contacts *c, size_t i)
     f->facet_radius[i] = sqrt(radius2);
 }
 
+/* The reference point is where the line of centres meets the facet's plane. The sums of stiffness
+ * count all points from the start, which bounds what any of them may do later: larger masses, never
+ * an unstable step. */
 static int bond_contact(struct brc_sim *sim, const struct vgcm_law *law, size_t i, size_t facet,
                         double ratio)
 {
@@ -200,6 +211,7 @@ static double area_ratio(const struct vgcm_census *census, const struct brc_face
     return census->is_projected ? fmax(brc_oblique_cos(facets, facets->seed, facet), LEAST_COS) : 1;
 }
 
+/* The specimen sorts facets by their cells, so that contact i is that of facet[i]. */
 static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
 {
     const struct brc_facets *facets = &sim->specimen->facets;
@@ -234,7 +246,9 @@ static bool centre_height(const struct brc_sim *sim, int32_t cell, const struct 
 }
 
 /* Drops the points beyond the platen's sharp edges. Where the platen is bonded the rest begin on
- * its surface: they are held as they lie, without a force. */
+ * its surface: they are held as they lie, without a force. On a plane the height is that of the
+ * others to the last bit, as a held plane of points should begin without a force; on a curved
+ * surface each point moves along its own normal. */
 static void fit_points(struct brc_sim *sim, size_t i, const struct brc_platen *platen, double above)
 {
     struct brc_contacts *c = &sim->platens;
@@ -281,7 +295,10 @@ static void set_platen_stiffness(struct brc_contacts *c, size_t i, const struct 
     brc_set(c->k[i], k * f->moment[i][VGCM_A], k * moment, 0);
 }
 
-/* The points of the boundary facets of a grain that face a platen. */
+/* The points of the boundary facets of a grain that face a platen. By the distance of the centre to
+ * the platen as its own half of a contact, whatever the shape of the surface; a seed on the platen
+ * would be infinitely stiff, hence the least distance. It begins with its points: they may lie
+ * anywhere and slide, so no field of six numbers is theirs. */
 static int platen_contact(struct brc_sim *sim, const struct vgcm_law *law, size_t i,
                           const struct brc_facing *facing, size_t n)
 {
@@ -331,15 +348,17 @@ static int bond_platens(struct brc_sim *sim, const struct vgcm_law *law)
     return code;
 }
 
-int vgcm_contacts_bond(struct brc_sim *sim, const struct vgcm_law *law)
+int vgcm_bond(struct brc_sim *sim, void *state)
 {
-    BRC_TRY(bond_pairs(sim, law));
-    BRC_TRY(bond_platens(sim, law));
+    const struct vgcm_state *own = state;
+    BRC_TRY(bond_pairs(sim, &own->law));
+    BRC_TRY(bond_platens(sim, &own->law));
     BRC_TRY(brc_contacts_compact(sim->ctx, &sim->pairs));
     return brc_contacts_compact(sim->ctx, &sim->platens);
 }
 
-/* Distance at which the spheres of a pair, or a sphere and a platen, begin to touch. */
+/* Distance at which the spheres of a pair, or a sphere and a platen, begin to touch. A platen has
+ * no radius; its height says how far the centre is. */
 static double touching_distance(const struct brc_sim *sim, const int32_t pair[2], double *now)
 {
     const struct vgcm_bodies *columns = sim->bodies.model_columns;
@@ -363,6 +382,8 @@ static bool must_stay(const struct brc_contacts *c, size_t contact, bool is_plat
            brc_norm2(c->f[contact]) > 0;
 }
 
+/* With the skin of the neighbour search, so that a pair is watched before it touches, and the list
+ * need not be made anew in each step. */
 static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
 {
     double now, touch = touching_distance(sim, pair, &now), height;
@@ -405,7 +426,8 @@ static size_t merge_contacts(const struct brc_sim *sim, const struct brc_contact
 /* Two grains without a bonded facet have no common plane, so that spheres are all that is left to
  * meet by. An overlap that is there when a pair is first seen (cells bulge out of their spheres,
  * and spheres of Laguerre cells overlap) would be energy from nowhere. The one point of a new
- * sphere contact, force-free as it is now. */
+ * sphere contact, force-free as it is now. As stiff as E-bar A / d with the section of the smaller
+ * sphere (README.md). */
 static int sphere_contact(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
                           size_t i)
 {
@@ -434,6 +456,7 @@ static int sphere_contact(struct brc_sim *sim, const struct vgcm_law *law, struc
     return 0;
 }
 
+/* Contacts that are new have no points yet: that is how they are told from the rest. */
 static int update_contacts(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
                            const struct brc_neighbours *list)
 {
@@ -457,9 +480,10 @@ static int update_contacts(struct brc_sim *sim, const struct vgcm_law *law, stru
     return brc_contacts_tidy(sim->ctx, c);
 }
 
-int vgcm_contacts_update(struct brc_sim *sim, const struct vgcm_law *law,
-                         const struct brc_neighbours *grains, const struct brc_neighbours *platens)
+int vgcm_update_contacts(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                         const struct brc_neighbours *platens)
 {
-    BRC_TRY(update_contacts(sim, law, &sim->pairs, grains));
-    return update_contacts(sim, law, &sim->platens, platens);
+    const struct vgcm_state *own = state;
+    BRC_TRY(update_contacts(sim, &own->law, &sim->pairs, grains));
+    return update_contacts(sim, &own->law, &sim->platens, platens);
 }

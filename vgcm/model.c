@@ -24,6 +24,8 @@ static const struct brc_field contact_fields[] = {
 static const struct brc_field point_fields[] = {VGCM_POINT_FIELDS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
+/* Called again by select whenever parameters may have changed, so nothing of the law may come from
+ * anywhere else. */
 void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *p)
 {
     *law = (struct vgcm_law){.e_bar = p->e_bar,
@@ -60,7 +62,9 @@ void vgcm_scale_params(struct vgcm_params *p, const struct brc_facets *facets)
         p->g_fs = ratio * vgcm_law_elastic_s(&law, kn);
 }
 
-/* The softening branch of every contact must fall to the right: no snap-back. */
+/* The softening branch of every contact must fall to the right: no snap-back. With less energy the
+ * strength would have to fall while the displacement goes back, which no step of a displacement can
+ * follow. */
 static int check_energy(struct brc_context *ctx, const char *name, double given, double elastic,
                         double distance)
 {
@@ -76,13 +80,15 @@ static int check_energy(struct brc_context *ctx, const char *name, double given,
 /* Bounds on the mean cosine and on the stiffness by direction: good, and bearable. */
 static const double GOOD_COS = 0.99, LEAST_COS = 0.9, GOOD_PART = 0.05, LEAST_PART = 0.2;
 
+/* A stiffness counts as off by the same ratio both ways. */
 static bool is_oblique(const struct brc_oblique *o, double least_cos, double most)
 {
     return o->mean_cos < least_cos || o->soft < 1 - most || o->stiff > 1 / (1 - most);
 }
 
 /* Springs along the lines of centres stand for the continuum only where facets are normal to them.
- */
+ * Seeds that lie outside of their cells are refused first: a normal that points backwards has no
+ * stiffness that could be off. */
 static int check_oblique(struct brc_context *ctx, const struct brc_oblique *o, bool is_kept,
                          const struct brc_facets *facets)
 {
@@ -109,7 +115,8 @@ static int check_oblique(struct brc_context *ctx, const struct brc_oblique *o, b
 }
 
 /* All that can be known to be wrong before a run, each with the numbers to mend it by: the law has
- * no checks of its own, as its loops have no place to report from. */
+ * no checks of its own, as its loops have no place to report from. Fracture energies that are
+ * `auto` are set in a copy: the parameters themselves are not for a check to change. */
 static int check(struct brc_context *ctx, const void *values, const struct brc_specimen *specimen)
 {
     struct vgcm_params scaled = *(const struct vgcm_params *)values, *p = &scaled;
@@ -144,6 +151,7 @@ static int check(struct brc_context *ctx, const void *values, const struct brc_s
                         census.largest_distance);
 }
 
+/* The law is made again by select; it is here so that bonds can be made before that. */
 static int create(struct brc_sim *sim, void **state)
 {
     struct vgcm_state *own = brc_alloc(sim->ctx, 1, sizeof *own);
@@ -155,11 +163,6 @@ static int create(struct brc_sim *sim, void **state)
         BRC_LANES; /* platens_kernels.inc.h takes so many points of a contact at a time */
     *state = own;
     return 0;
-}
-
-static void free_state(void *state)
-{
-    free(state);
 }
 
 /* Spheres at their centres, with the mass of the whole cell: a specimen of spheres alone would
@@ -195,19 +198,7 @@ static int shape(struct brc_sim *sim, void *state)
     return 0;
 }
 
-static int bond(struct brc_sim *sim, void *state)
-{
-    const struct vgcm_state *own = state;
-    return vgcm_contacts_bond(sim, &own->law);
-}
-
-static int pairs(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
-                 const struct brc_neighbours *platens)
-{
-    const struct vgcm_state *own = state;
-    return vgcm_contacts_update(sim, &own->law, grains, platens);
-}
-
+/* Flags are constants of the loops: what is off costs nothing in a step. */
 static void select_loops(struct brc_sim *sim, void *state)
 {
     struct vgcm_state *own = state;
@@ -220,6 +211,7 @@ static void select_loops(struct brc_sim *sim, void *state)
     own->loops = brc_simd_of(sim->run.simd) == BRC_SIMD_BASE ? &vgcm_loops_base : &vgcm_loops_avx2;
 }
 
+/* Two of the operations choose their loop; all others of the table are called as they are. */
 static void forces(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
@@ -230,24 +222,6 @@ static void platens(struct brc_sim *sim, void *state)
 {
     const struct vgcm_state *own = state;
     own->loops->platens(sim, &own->law, own->flags);
-}
-
-static void energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS])
-{
-    const struct vgcm_state *own = state;
-    vgcm_energy_stored(sim, &own->law, of_grain);
-}
-
-static int springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
-{
-    const struct vgcm_state *own = state;
-    return vgcm_springs_list(sim, &own->law, out);
-}
-
-static double strength_left(const struct brc_sim *sim, const void *state, size_t contact)
-{
-    const struct vgcm_state *own = state;
-    return vgcm_strength_left(&sim->pairs, &own->law, contact);
 }
 
 /* One line for the header of a run: what a reader wants who compares it with the print. */
@@ -277,6 +251,8 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
              census.oblique.mean_cos, census.is_projected ? " (areas are projected)" : "");
 }
 
+/* Not saved (no_pairs and so on): moments on grains, which the loop adds to the bodies at once, and
+ * what only points of platens have. */
 const struct brc_model brc_model_vgcm = {
     .name = "vgcm",
     .citation = "M. Candeias, N. Monteiro Azevedo, M. L. Braga Farinha: VGCM3D - A 3D rigid "
@@ -291,15 +267,15 @@ const struct brc_model brc_model_vgcm = {
     .no_pairs = "ta tb h un",
     .no_platens = "u status",
     .shape = shape,
-    .bond = bond,
-    .pairs = pairs,
+    .bond = vgcm_bond,
+    .pairs = vgcm_update_contacts,
     .forces = forces,
     .platens = platens,
-    .energy = energy,
-    .springs = springs,
+    .energy = vgcm_energy,
+    .springs = vgcm_springs,
     .check = check,
     .create = create,
-    .free = free_state,
+    .free = free,
     .select = select_loops,
-    .strength_left = strength_left,
+    .strength_left = vgcm_strength_left,
     .describe = describe};

@@ -63,6 +63,8 @@ static void vgcm_platen_to_space(const struct vgcm_platen_loop *w, double v[3], 
     brc_axpy(v, r[2], w->frame[2]);
 }
 
+/* The frame that rides is normalised in each step: products of many turns would drift from length
+ * 1. */
 static void vgcm_platen_frames(struct vgcm_platen_loop *w, size_t i)
 {
     const struct brc_bodies *b = &w->sim->bodies;
@@ -126,7 +128,8 @@ VGCM_INLINE void vgcm_platen_motion(const struct vgcm_platen_loop *w, const brc_
     vgcm_platen_turn(n, 1, x->du);
 }
 
-/* Four points of contact i from point j on. */
+/* Four points of contact i from point j on. The height is total, as the surface has it, so that an
+ * opening cannot drift from where the platen is. */
 VGCM_INLINE void vgcm_platen_read(const struct vgcm_platen_loop *w, size_t i, size_t j,
                                   struct vgcm_platen_points *x)
 {
@@ -160,7 +163,8 @@ VGCM_INLINE void vgcm_platen_read(const struct vgcm_platen_loop *w, size_t i, si
     vgcm_platen_motion(w, from, is_sphere, x);
 }
 
-/* Points held along the normal or fully: springs both ways that never break, without friction. */
+/* Points held along the normal or fully: springs both ways that never break, without friction. In
+ * total displacements along the normal, so that nothing drifts however long a test is. */
 VGCM_INLINE void vgcm_platen_hold(const struct vgcm_platen_loop *w, struct vgcm_platen_points *x,
                                   struct vgcm_energy_lanes *e)
 {
@@ -194,7 +198,8 @@ VGCM_INLINE void vgcm_platen_viscous(const struct vgcm_platen_loop *w,
 }
 
 /* Adds forces per area, along the surface's own frame, to a sum of forces and moments about the
- * grain. */
+ * grain. About the grain's centre; the moment about the platen's follows for all points together
+ * (vgcm_platen_finish). */
 VGCM_INLINE void vgcm_platen_add(const struct vgcm_platen_loop *w, brc_lanes sum[6],
                                  const struct vgcm_platen_points *x, const brc_lanes per_area[3])
 {

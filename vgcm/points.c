@@ -20,7 +20,9 @@ static double determinant(const double m[3])
 }
 
 /* The symmetric b with b from b = to: the geometric mean of from's inverse and to. A sliver, too
- * thin for its determinant to be known, keeps its shape and takes the polar moment. */
+ * thin for its determinant to be known, keeps its shape and takes the polar moment. Of the many
+ * maps that turn one second moment into the other it is the one that is symmetric: it stretches and
+ * does not turn, so that a facet that is right already stays as it is. */
 static void map_between(double b[3], const double from[3], const double to[3])
 {
     double trace = from[0] + from[2], scale_all = sqrt((to[0] + to[2]) / trace);
@@ -35,6 +37,7 @@ static void map_between(double b[3], const double from[3], const double to[3])
     brc_scale(b, sum, scale);
 }
 
+/* Second moment of a weight at r. */
 static void add_square(double m[3], double weight, const double r[2])
 {
     m[0] += weight * r[0] * r[0];
@@ -74,6 +77,8 @@ static void draw_in(const double centroid[3], const double normal[3], size_t n, 
     }
 }
 
+/* A third of each triangle about the centroid to each of its corners: linear functions over the
+ * triangle are integrated exactly by that, which is why area and centroid are the facet's. */
 void vgcm_points_place(enum vgcm_points_rule rule, const struct brc_facets *facets, size_t facet,
                        double (*x)[3], double *area)
 {

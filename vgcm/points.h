@@ -12,7 +12,7 @@ enum vgcm_points_rule {
     VGCM_POINTS_ONE    /* the centroid alone */
 };
 
-/* Number of points on a facet of n vertices. */
+/* Number of points on a facet of n vertices. Asked before, so that the caller can make room. */
 int vgcm_points_count(enum vgcm_points_rule rule, size_t n);
 /* Places and areas of the points of a facet: vgcm_points_count of them, the centroid's last. The
  * areas sum to the facet's area and their centroid is the facet's. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* VGCM-3D: spheres that interact through the points of their common Laguerre facet. What the files
- * of this folder share: parameters, state, and the functions that they call of each other. */
+ * of this folder share: parameters, state, and the functions that they call of each other. Field
+ * lists say what is saved and hashed; the law of a point is in law.h, which does not know them. */
 #ifndef VGCM_VGCM_H
 #define VGCM_VGCM_H
 
@@ -129,6 +130,7 @@ struct vgcm_points {
 };
 
 struct vgcm_loops;
+/* Made by create and select; holds nothing that a restart would miss. */
 struct vgcm_state {
     struct vgcm_law law;
     const struct vgcm_loops *loops;
@@ -152,6 +154,7 @@ static inline enum brc_bonding vgcm_platen_bonding(const struct brc_contacts *c,
     return vgcm_columns(c)->phase[i] == VGCM_SPHERE ? BRC_BONDING_NONE : platen->bonding;
 }
 
+/* A plane has one normal for all points, and the loop leaves out their turns. */
 static inline bool vgcm_platen_is_curved(const struct brc_platen *platen)
 {
     return platen->surface == BRC_SURFACE_CYLINDER ||
@@ -163,7 +166,8 @@ void vgcm_law_of(struct vgcm_law *law, const struct vgcm_params *params);
 
 /* make_contacts.c: which pairs interact, and the contacts of new contacts */
 
-/* Facets that the interaction rule keeps. */
+/* Facets that the interaction rule keeps. Measured from the facets whenever it is asked for, before
+ * a run and at its start, so that no copy can be out of date. */
 struct vgcm_census {
     size_t n_inner, n_contacts;             /* inner facets, those that are contacts */
     double mean_distance, largest_distance; /* m, of the contacts */
@@ -178,26 +182,25 @@ void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *p
 void vgcm_scale_params(struct vgcm_params *params, const struct brc_facets *facets);
 /* Radius of a cell's sphere; for a plain Voronoi cell the largest about the seed that fits in. */
 double vgcm_radius(const struct brc_facets *facets, size_t cell);
-int vgcm_contacts_bond(struct brc_sim *sim, const struct vgcm_law *law);
-int vgcm_contacts_update(struct brc_sim *sim, const struct vgcm_law *law,
-                         const struct brc_neighbours *grains, const struct brc_neighbours *platens);
+/* Operations of the model (common/engine/model.h). */
+int vgcm_bond(struct brc_sim *sim, void *state);
+int vgcm_update_contacts(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
+                         const struct brc_neighbours *platens);
 
 /* forces_kernels.inc.h and platens_kernels.inc.h for each instruction set: the loops over contacts
- * of grains, specialised by the flags of law.h, and the loop over those with platens */
+ * of grains, specialised by the flags of law.h, and the loop over those with platens A table for
+ * each instruction set, so that which one runs is chosen in one place. */
 struct vgcm_loops {
     void (*forces[VGCM_N_LOOPS])(struct brc_sim *sim, const struct vgcm_law *law);
     void (*platens)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
 };
 extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2;
 
-/* energy.c */
-/* Adds what contacts have booked on the bodies in this step to the ledger. */
-void vgcm_energy_stored(const struct brc_sim *sim, const struct vgcm_law *law,
-                        double (*of_grain)[BRC_N_ACCOUNTS]);
+/* energy.c: operations of the model. */
+void vgcm_energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS]);
 /* Tensile strength of a bonded contact that its points have left, over that at the start, by area.
  */
-double vgcm_strength_left(const struct brc_contacts *c, const struct vgcm_law *law, size_t contact);
-int vgcm_springs_list(const struct brc_sim *sim, const struct vgcm_law *law,
-                      struct brc_springs *out);
+double vgcm_strength_left(const struct brc_sim *sim, const void *state, size_t contact);
+int vgcm_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
 
 #endif

@@ -97,7 +97,7 @@ static void look_at_row(struct changes *changes, const struct brc_contacts *c, s
 {
     const struct poly_points *points = c->point_columns;
     for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
-        double then = *poly_weight(points, p), now = changes->weight[p];
+        double then = points->spring[p][POLY_WEIGHT], now = changes->weight[p];
         changes->n_points += then > 0;
         if ((then > 0) == (now > 0))
             continue;
