@@ -15,7 +15,7 @@
 #include <string.h>
 
 enum {
-    POLY_CONTACTS = 32, /* contacts of a batch; row POLY_CONTACTS is what nobody reads */
+    POLY_CONTACTS = 32, /* contacts of a batch; number POLY_CONTACTS is what nobody reads */
     POLY_TASKS = 1024   /* points at a time */
 };
 
@@ -107,12 +107,12 @@ enum {
 
 /* A point to look at, of a contact of the batch. */
 struct poly_task {
-    int32_t row, point;
+    int32_t contact, point;
 };
 
 /* A point that does not touch. */
 struct poly_apart {
-    int32_t row, point;
+    int32_t contact, point;
     double path;
     bool fades;
 };
@@ -146,14 +146,15 @@ struct poly_batch {
     struct poly_lengths len;
     bool viscous, is_platens;
     int32_t n_contacts, n_points, n_apart;
-    int32_t n_ahead, ahead[POLY_CONTACTS];                          /* contacts of the next batch */
-    int32_t row[POLY_CONTACTS], a[POLY_CONTACTS], b[POLY_CONTACTS]; /* filled up to whole fours */
-    bool listed[POLY_CONTACTS];                                     /* it has points */
+    int32_t n_ahead, ahead[POLY_CONTACTS]; /* contacts of the next batch */
+    int32_t contact[POLY_CONTACTS], a[POLY_CONTACTS],
+        b[POLY_CONTACTS];                   /* filled up to whole fours */
+    bool listed[POLY_CONTACTS];             /* it has points */
     bool is_stable[POLY_CONTACTS];          /* nothing of it needs a decision in this step */
     bool has_apart[POLY_CONTACTS + 1];      /* some of its points are apart */
     bool will_linearise[POLY_CONTACTS + 1]; /* its tangent is found */
-    struct poly_pair pair;                  /* of the contact pair_of_row */
-    int32_t pair_of_row;
+    struct poly_pair pair;                  /* of the contact pair_of_contact */
+    int32_t pair_of_contact;
     int32_t n_tasks[POLY_N_LISTS];
     double nearest[POLY_CONTACTS + 1]; /* the smallest gap of a contact's points */
     double

@@ -6,10 +6,10 @@
 /* Four times the work of one bond, for what is asked seldom: a scalar twin of the law would be a
  * second place to be wrong in. */
 bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
-                          const struct poly_state *st, const struct brc_contacts *c, size_t row)
+                          const struct poly_state *st, const struct brc_contacts *c, size_t contact)
 {
-    int32_t n = (int32_t)row, a = c->a[row], b = c->b[row];
-    const struct poly_numbers4 i = {{n, n, n, n}, {a, a, a, a}, {b, b, b, b}};
+    int32_t n = (int32_t)contact, a = c->a[contact], b = c->b[contact];
+    const struct poly_index4 i = {{n, n, n, n}, {a, a, a, a}, {b, b, b, b}};
     struct poly_bonds4 bonds;
     struct poly_bond_pose4 pose;
     struct poly_bond_state4 all;

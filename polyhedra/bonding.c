@@ -7,71 +7,65 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void to_frame(double r[3], const double q[4], const double v[3])
-{
-    double m[3][3];
-    brc_quat_matrix(m, q);
-    brc_mat_mul_t(r, m, v);
-}
-
 /* Material points, normals and tangents of a contact's bond in the frames of its bodies; n from a.
  */
 /* Points and directions are kept in both bodies rather than a displacement that is added up: rigid
  * motion of a pair gives no force then, whatever the angle, and nothing drifts. The tangents are
  * one in space at the start and are carried by a body each: what they have turned against each
  * other is the twist. */
-static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t row,
+static void fix_bond(const struct brc_sim *sim, const struct brc_contacts *c, size_t contact,
                      const double at[3], const double n[3])
 {
-    const struct brc_bodies *b = &sim->bodies;
-    struct poly_contacts *columns = c->model_columns;
-    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
-    double arm[3], back[3], t[3], unused[3];
+    static const int part[2][3] = {{POLY_BOND_CA, POLY_BOND_NA, POLY_BOND_TA},
+                                   {POLY_BOND_CB, POLY_BOND_NB, POLY_BOND_TB}};
+    const struct poly_contacts *columns = c->model_columns;
+    const int32_t body[2] = {c->a[contact], c->b[contact]};
+    double *bond = columns->bond[contact], t[3], unused[3];
     brc_frame(t, unused, n);
-    brc_scale(back, n, -1);
-    brc_sub(arm, at, b->x[ia]);
-    to_frame(columns->bond[row] + POLY_BOND_CA, b->q[ia], arm);
-    to_frame(columns->bond[row] + POLY_BOND_NA, b->q[ia], n);
-    to_frame(columns->bond[row] + POLY_BOND_TA, b->q[ia], t);
-    brc_sub(arm, at, b->x[ib]);
-    to_frame(columns->bond[row] + POLY_BOND_CB, b->q[ib], arm);
-    to_frame(columns->bond[row] + POLY_BOND_NB, b->q[ib], back);
-    to_frame(columns->bond[row] + POLY_BOND_TB, b->q[ib], t);
+    for (int k = 0; k < 2; k++) {
+        double m[3][3], arm[3], out[3];
+        brc_quat_matrix(m, sim->bodies.q[body[k]]);
+        brc_sub(arm, at, sim->bodies.x[body[k]]);
+        brc_scale(out, n, k == 0 ? 1 : -1);
+        brc_mat_mul_t(bond + part[k][0], m, arm);
+        brc_mat_mul_t(bond + part[k][1], m, out);
+        brc_mat_mul_t(bond + part[k][2], m, t);
+    }
 }
 
 /* Bond of two grains over a facet. */
-static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t row, size_t facet)
+static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t contact, size_t facet)
 {
     const struct brc_facets *f = &sim->specimen->facets;
     const struct poly_params *params = poly_params_of(sim);
     struct brc_contacts *c = &sim->pairs;
     struct poly_contacts *columns = c->model_columns;
-    size_t ia = (size_t)c->a[row], ib = (size_t)c->b[row];
+    size_t ia = (size_t)c->a[contact], ib = (size_t)c->b[contact];
     double d[3], ea = st->eroded[facet][0], eb = st->eroded[facet][1];
     brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
-    c->facet[row] = (int32_t)facet;
+    c->facet[contact] = (int32_t)facet;
     /* Erosion may take away a small facet on one side or both. With the area of the facet it is
      * bonded all the same: the rock was bonded there. */
     st->n_removed += ea == 0 || eb == 0;
-    columns->bond[row][POLY_BOND_AREA] = f->area[facet];
+    columns->bond[contact][POLY_BOND_AREA] = f->area[facet];
     if (params->area == POLY_AREA_ERODED)
-        columns->bond[row][POLY_BOND_AREA] = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
-    columns->bond[row][POLY_BOND_LENGTH] =
+        columns->bond[contact][POLY_BOND_AREA] = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
+    columns->bond[contact][POLY_BOND_LENGTH] =
         params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
-    fix_bond(sim, c, row, f->centroid[facet], f->normal[facet]);
-    if (!params->bonds || columns->bond[row][POLY_BOND_AREA] == 0)
+    fix_bond(sim, c, contact, f->centroid[facet], f->normal[facet]);
+    if (!params->bonds || columns->bond[contact][POLY_BOND_AREA] == 0)
         return;
-    c->status[row] = BRC_INTACT;
+    c->status[contact] = BRC_INTACT;
     st->n_bonds++;
-    st->mean_area += columns->bond[row][POLY_BOND_AREA];
-    st->mean_length += columns->bond[row][POLY_BOND_LENGTH];
+    st->mean_area += columns->bond[contact][POLY_BOND_AREA];
+    st->mean_length += columns->bond[contact][POLY_BOND_LENGTH];
 }
 
 /* Hold of a platen on a grain by its boundary facet: the grain's half of a bond, as stiff as the
  * distance of its centre (or the gap R) makes it. A platen has no half of its own, being rigid. Its
  * normal is that of its surface at the facet, so that a curved platen holds each facet along its
  * own line. */
-static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
+static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t contact,
                       const struct brc_platen *p, size_t facet)
 {
     const struct brc_facets *f = &sim->specimen->facets;
@@ -80,17 +74,17 @@ static void open_hold(struct brc_sim *sim, struct poly_state *st, size_t row,
     struct poly_contacts *columns = c->model_columns;
     const double *at = sim->bodies.x[p->body];
     double height, unused, n[3], back[3];
-    brc_platen_height(p, at, sim->bodies.x[c->a[row]], &height, n);
+    brc_platen_height(p, at, sim->bodies.x[c->a[contact]], &height, n);
     brc_platen_height(p, at, f->centroid[facet], &unused, n);
     brc_scale(back, n, -1);
-    c->facet[row] = (int32_t)facet;
-    columns->bond[row][POLY_BOND_AREA] =
+    c->facet[contact] = (int32_t)facet;
+    columns->bond[contact][POLY_BOND_AREA] =
         params->area == POLY_AREA_FACET ? f->area[facet] : st->eroded[facet][0];
-    columns->bond[row][POLY_BOND_LENGTH] =
+    columns->bond[contact][POLY_BOND_LENGTH] =
         params->strain_length == POLY_LENGTH_GAP ? params->radius : height;
-    fix_bond(sim, c, row, f->centroid[facet], back);
-    if (p->bonding != BRC_BONDING_NONE && columns->bond[row][POLY_BOND_AREA] > 0)
-        c->status[row] = BRC_INTACT;
+    fix_bond(sim, c, contact, f->centroid[facet], back);
+    if (p->bonding != BRC_BONDING_NONE && columns->bond[contact][POLY_BOND_AREA] > 0)
+        c->status[contact] = BRC_INTACT;
 }
 
 /* Contacts with platens are those of the facets that lie on them, and hold where the platen does.
@@ -113,8 +107,8 @@ static int open_platens(struct brc_sim *sim, struct poly_state *st)
     for (size_t i = 0; code == 0 && i < n_facing; i++) {
         if (!facing[i].is_on)
             continue;
-        int64_t row = brc_contacts_find(&sim->platens, facing[i].cell, facing[i].body);
-        open_hold(sim, st, (size_t)row, brc_sim_platen(sim, facing[i].body),
+        int64_t contact = brc_contacts_find(&sim->platens, facing[i].cell, facing[i].body);
+        open_hold(sim, st, (size_t)contact, brc_sim_platen(sim, facing[i].body),
                   (size_t)facing[i].facet);
     }
     free(pair);

@@ -18,13 +18,13 @@ static int compare_pairs(const void *x, const void *y)
 
 /* A contact that is bonded or touches has a state, which must not be lost though the neighbour
  * list lacks it: its lists have been made for a range of their own. */
-static bool is_kept(const struct brc_contacts *c, size_t row)
+static bool is_kept(const struct brc_contacts *c, size_t contact)
 {
     const struct poly_points *points = c->point_columns;
-    if (c->status[row] == BRC_INTACT)
+    if (c->status[contact] == BRC_INTACT)
         return true;
-    for (int32_t k = 0; k < c->np[row]; k++)
-        if (points->spring[(size_t)c->p0[row] + (size_t)k][POLY_WEIGHT] > 0)
+    for (int32_t k = 0; k < c->np[contact]; k++)
+        if (points->spring[(size_t)c->p0[contact] + (size_t)k][POLY_WEIGHT] > 0)
             return true;
     return false;
 }
@@ -39,13 +39,13 @@ static int merge_contacts(struct brc_context *ctx, struct brc_contacts *c,
     if (pair == NULL)
         return BRC_ERR_MEMORY;
     size_t n = 0, i = 0;
-    for (size_t row = 0; row < c->n; row++) {
-        const int32_t own[2] = {c->a[row], c->b[row]};
+    for (size_t contact = 0; contact < c->n; contact++) {
+        const int32_t own[2] = {c->a[contact], c->b[contact]};
         while (i < near->n && compare_pairs(near->pair[i], own) < 0)
             memcpy(pair[n++], near->pair[i++], sizeof *pair);
         bool listed = i < near->n && compare_pairs(near->pair[i], own) == 0;
         i += listed;
-        if (listed || is_kept(c, row))
+        if (listed || is_kept(c, contact))
             memcpy(pair[n++], own, sizeof *pair);
     }
     while (i < near->n)
@@ -129,38 +129,38 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
 /* Points that are awake stand in the order of compare_point, so that sums over them do not depend
  * on how they came there. A point that wakes up is put in its place among the others by insertion:
  * few wake in one step, and the rest are sorted already. */
-void poly_wake_points(struct brc_contacts *c, size_t row, bool merged)
+void poly_wake_points(struct brc_contacts *c, size_t contact, bool merged)
 {
     const struct poly_points *points = c->point_columns;
     struct poly_contacts *columns = c->model_columns;
-    size_t first = (size_t)c->p0[row], end = first + (size_t)c->np[row];
-    size_t next = first + (size_t)columns->awake[row];
-    for (; next < end && columns->skin_left[row] <= points->sleep[next]; next++) {
+    size_t first = (size_t)c->p0[contact], end = first + (size_t)c->np[contact];
+    size_t next = first + (size_t)columns->awake[contact];
+    for (; next < end && columns->skin_left[contact] <= points->sleep[next]; next++) {
         struct poly_feature f = poly_point(points, next);
         double hold = points->feature_valid_to[next];
         size_t p = next;
         for (; p > first && compare_point(&f, points, p - 1, merged) < 0; p--)
             copy_point(points, p, p - 1);
-        set_point(points, p, &f, columns->skin_left[row], hold);
-        columns->ready[row] = 0;
+        set_point(points, p, &f, columns->skin_left[contact], hold);
+        columns->ready[contact] = 0;
     }
-    columns->awake[row] = (int32_t)(next - first);
+    columns->awake[contact] = (int32_t)(next - first);
 }
 
 /* Those that sleep stand sorted, so that to see whether one wakes up is to look at the first. */
-void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep)
+void poly_sleep_point(struct brc_contacts *c, size_t contact, size_t p, double sleep)
 {
     const struct poly_points *points = c->point_columns;
     struct poly_contacts *columns = c->model_columns;
     struct poly_feature f = poly_point(points, p);
     double hold = points->feature_valid_to[p];
-    size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
-    size_t awake = (size_t)c->p0[row] + (size_t)columns->awake[row]--;
+    size_t end = (size_t)c->p0[contact] + (size_t)c->np[contact];
+    size_t awake = (size_t)c->p0[contact] + (size_t)columns->awake[contact]--;
     /* the others that are awake close up; those that sleep are sorted by when they wake up */
     for (; p + 1 < end && (p + 1 < awake || points->sleep[p + 1] > sleep); p++)
         copy_point(points, p, p + 1);
     set_point(points, p, &f, sleep, hold);
-    columns->ready[row] = 0;
+    columns->ready[contact] = 0;
 }
 
 /* Pairs that may touch at once first, then by the path that they are free for. The order of what
@@ -179,21 +179,21 @@ static int compare_features(const void *x, const void *y)
 
 /* The contact's points become the listed features; those that act keep their state. A point that
  * acts is always listed again, because it is within reach. */
-static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t row,
+static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t contact,
                           const struct poly_list *list, bool merged)
 {
     struct poly_contacts *columns = c->model_columns;
-    double skin_left = columns->skin_left[row];
+    double skin_left = columns->skin_left[contact];
     if (list->n > 1)
         qsort(list->feature, list->n, sizeof *list->feature, compare_features);
     /* Only what acts has a state worth keeping. The rest is known from the list that has just
      * been made, and better than before. */
-    size_t kept = gather_active(c->point_columns, (size_t)c->p0[row], (size_t)c->np[row]);
+    size_t kept = gather_active(c->point_columns, (size_t)c->p0[contact], (size_t)c->np[contact]);
     size_t n = kept + list->n;
-    c->np[row] = (int32_t)kept;
-    BRC_TRY(brc_contacts_points(ctx, c, row, (int32_t)n));
+    c->np[contact] = (int32_t)kept;
+    BRC_TRY(brc_contacts_points(ctx, c, contact, (int32_t)n));
     struct poly_points *points = c->point_columns;
-    size_t first = (size_t)c->p0[row], next = first + kept;
+    size_t first = (size_t)c->p0[contact], next = first + kept;
     for (size_t k = 0; k < list->n; k++) {
         size_t p = first;
         while (p < first + kept && compare_point(&list->feature[k], points, p, merged) != 0)
@@ -205,54 +205,54 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
             set_point(points, next++, &list->feature[k], skin_left - list->feature[k].free,
                       HUGE_VAL);
     }
-    c->np[row] = (int32_t)(next - first);
-    columns->awake[row] = (int32_t)kept;
-    columns->ready[row] = 0;
+    c->np[contact] = (int32_t)(next - first);
+    columns->awake[contact] = (int32_t)kept;
+    columns->ready[contact] = 0;
     return 0;
 }
 
 /* Without a feature in reach, rebuild_at says when to look again, by the paths of both bodies,
  * which need no look at the pair; with some, skin_left does, by their relative path, which a common
  * motion leaves as it is. */
-int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t row)
+int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t contact)
 {
     struct brc_contacts *c = &sim->pairs;
     struct poly_contacts *columns = c->model_columns;
     const struct poly_params *params = poly_params_of(sim);
     struct poly_pair pair;
     double allowance;
-    poly_pair_of(&pair, sim, st, c->a[row], c->b[row]);
+    poly_pair_of(&pair, sim, st, c->a[contact], c->b[contact]);
     BRC_TRY(st->kernels.list(sim->ctx, &st->list, &pair, (enum poly_rule)params->features,
                              POLY_LIST_SKIN * params->radius, &allowance));
-    columns->rebuild_at[row] =
-        sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] + allowance;
-    columns->skin_left[row] = allowance;
-    return replace_points(sim->ctx, c, row, &st->list, params->features == POLY_MERGED);
+    columns->rebuild_at[contact] =
+        sim->bodies.path_length[c->a[contact]] + sim->bodies.path_length[c->b[contact]] + allowance;
+    columns->skin_left[contact] = allowance;
+    return replace_points(sim->ctx, c, contact, &st->list, params->features == POLY_MERGED);
 }
 
 /* Vertices of the grain within the skin of the platen; the lowest of the others is the allowance.
  */
-int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row)
+int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t contact)
 {
     struct brc_contacts *c = &sim->platens;
     struct poly_contacts *columns = c->model_columns;
-    size_t a = (size_t)c->a[row], first = st->shapes.vertex_first[a];
+    size_t a = (size_t)c->a[contact], first = st->shapes.vertex_first[a];
     size_t n = st->shapes.vertex_first[a + 1] - first;
     double radius = poly_params_of(sim)->radius, reach = (1 + POLY_PLATEN_SKIN) * radius;
     double allowance = HUGE_VAL;
-    const struct brc_platen *platen = brc_sim_platen(sim, c->b[row]);
+    const struct brc_platen *platen = brc_sim_platen(sim, c->b[contact]);
     st->list.n = 0;
     for (size_t v = 0; v < n; v++) {
         double height, n_platen[3];
-        brc_platen_height(platen, sim->bodies.x[c->b[row]], st->global_vertices[first + v], &height,
-                          n_platen);
+        brc_platen_height(platen, sim->bodies.x[c->b[contact]], st->global_vertices[first + v],
+                          &height, n_platen);
         struct poly_feature f = {.i = (int32_t)v, .j = 0, .kind = POLY_VERTEX_A};
         if (height < reach)
             BRC_TRY(poly_list_add(sim->ctx, &st->list, &f));
         else
             allowance = fmin(allowance, height - radius);
     }
-    columns->rebuild_at[row] =
-        sim->bodies.path_length[a] + sim->bodies.path_length[c->b[row]] + allowance;
-    return replace_points(sim->ctx, c, row, &st->list, false);
+    columns->rebuild_at[contact] =
+        sim->bodies.path_length[a] + sim->bodies.path_length[c->b[contact]] + allowance;
+    return replace_points(sim->ctx, c, contact, &st->list, false);
 }

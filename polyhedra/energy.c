@@ -27,9 +27,9 @@ static void add_bonds(const struct store *s, const struct brc_sim *sim, const st
                       const struct brc_contacts *c)
 {
     struct poly_bond bond;
-    for (size_t row = 0; row < c->n; row++)
-        if (c->status[row] == BRC_INTACT && poly_bond_of_contact(&bond, sim, st, c, row))
-            s->of_grain[c->a[row]][BRC_ACCOUNT_BOND] += bond.energy;
+    for (size_t contact = 0; contact < c->n; contact++)
+        if (c->status[contact] == BRC_INTACT && poly_bond_of_contact(&bond, sim, st, c, contact))
+            s->of_grain[c->a[contact]][BRC_ACCOUNT_BOND] += bond.energy;
 }
 
 void poly_energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS])
@@ -41,8 +41,8 @@ void poly_energy(const struct brc_sim *sim, const void *state, double (*of_grain
                       sim->pairs.point_columns, of_grain};
     poly_each_active(sim, st, add_touch, &s);
     s.points = c->point_columns;
-    for (size_t row = 0; row < c->n; row++)
-        poly_each_touch(sim, st, c, row, 0, add_touch, &s);
+    for (size_t contact = 0; contact < c->n; contact++)
+        poly_each_touch(sim, st, c, contact, 0, add_touch, &s);
     add_bonds(&s, sim, st, &sim->pairs);
     add_bonds(&s, sim, st, c);
 }

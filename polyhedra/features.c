@@ -60,17 +60,17 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
         *margin = poly_closest_margin(c, &at, q);
     }
     struct poly_geometry4 all;
-    brc_lanes place[3], normal[3], sign = brc_lanes_all(of_b ? 1 : -1);
+    brc_lanes vertex[3], normal[3], sign = brc_lanes_all(of_b ? 1 : -1);
     /* The distance is that of the walk, in the body frame. The loop has it from the planes and
      * vertices in space; both are right to round-off, and a contact goes over to the loop as
      * soon as its feature is sure. */
     poly_to_space(out, rm, at.n);
-    poly_all3(place, v);
+    poly_all3(vertex, v);
     poly_all3(normal, out);
     brc_mask touches =
-        poly_vertex_geometry(&all, place, brc_lanes_all(at.s), normal, sign, p->contact_distance);
+        poly_vertex_geometry(&all, vertex, brc_lanes_all(at.s), normal, sign, p->contact_distance);
     if (rule == POLY_MERGED && f->near[0] != POLY_NONE_NEAR)
-        fade_vertex(&all, p, of_b, place, sign, f->near);
+        fade_vertex(&all, p, of_b, vertex, sign, f->near);
     poly_geometry_lane(t, &all, 0);
     return touches[0];
 }

@@ -10,9 +10,9 @@
 /* Stiffness of a contact: k_version changes when it grows, or has fallen for good. Masses and the
  * stable step are found anew when k_version changes; a moment
  * that has shrunk by less than the room twice over only leaves them on the safe side. */
-static void store_stiffness(struct brc_contacts *c, size_t row, const double k[3])
+static void store_stiffness(struct brc_contacts *c, size_t contact, const double k[3])
 {
-    double *old = c->k[row];
+    double *old = c->k[contact];
     bool same = k[0] == old[0];
     for (int i = 1; i < 3; i++)
         same = same && k[i] <= old[i] && k[i] * POLY_K_ROOM * POLY_K_ROOM >= old[i];
@@ -24,18 +24,18 @@ static void store_stiffness(struct brc_contacts *c, size_t row, const double k[3
 
 /* True when the travel of a contact's bodies calls for a new list. For contacts without listed
  * features, which have no relative path: the sum of the paths of both bodies is a bound of it. */
-static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t row)
+static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t contact)
 {
     const struct poly_contacts *columns = c->model_columns;
-    return sim->bodies.path_length[c->a[row]] + sim->bodies.path_length[c->b[row]] >=
-           columns->rebuild_at[row];
+    return sim->bodies.path_length[c->a[contact]] + sim->bodies.path_length[c->b[contact]] >=
+           columns->rebuild_at[contact];
 }
 
 /* A contact without bond and listed features, which had no spring in the last step either: its
  * forces and works are zero already. */
-static bool is_idle(const struct brc_contacts *c, size_t row)
+static bool is_idle(const struct brc_contacts *c, size_t contact)
 {
-    return c->np[row] == 0 && c->status[row] != BRC_INTACT && c->k[row][0] == 0;
+    return c->np[contact] == 0 && c->status[contact] != BRC_INTACT && c->k[contact][0] == 0;
 }
 
 /* A bond that breaks is gone at once, and the lanes lose it. What it had stored, less the work that
@@ -46,22 +46,22 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
     struct brc_contacts *c = batch->contacts;
     struct poly_contact4 *g = &batch->four[i / BRC_LANES];
     const struct poly_contacts *columns = c->model_columns;
-    size_t row = (size_t)batch->row[i];
+    size_t contact = (size_t)batch->contact[i];
     int lane = i % BRC_LANES;
     struct poly_bond bond;
-    poly_bond_of_contact(&bond, sim, batch->st, c, row);
+    poly_bond_of_contact(&bond, sim, batch->st, c, contact);
     double last = -0.5 * sim->dt * poly_power(&g->bond, g, g->x)[lane];
-    struct brc_event event = {.a = c->a[row],
-                              .b = c->b[row],
-                              .facet = c->facet[row],
+    struct brc_event event = {.a = c->a[contact],
+                              .b = c->b[contact],
+                              .facet = c->facet[contact],
                               .mode = (enum brc_mode)poly_bond_mode(&bond),
-                              .area = columns->bond[row][POLY_BOND_AREA],
+                              .area = columns->bond[contact][POLY_BOND_AREA],
                               .energy = bond.energy - last};
     brc_copy(event.x, bond.x);
     brc_copy(event.n, bond.n);
     /* The energy is the stored one of the pose that broke it, not of the limit: the step over
      * the limit is dissipated with it, and the ledger closes. */
-    c->status[row] = BRC_BROKEN;
+    c->status[contact] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);
     if (poly_is_linearised(sim))
         poly_account_bond(batch, i, event.energy);
@@ -72,17 +72,17 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
 }
 
 /* Contacts that have something to do, for the next batch; returns the contact after them. */
-static size_t look_ahead(struct poly_batch *batch, size_t row)
+static size_t look_ahead(struct poly_batch *batch, size_t contact)
 {
     const struct brc_contacts *c = batch->contacts;
     const struct poly_contacts *columns = c->model_columns;
     int32_t n = 0;
-    for (; row < c->n && n < POLY_CONTACTS; row++)
-        if ((batch->is_platens || !columns->is_linearised[row]) &&
-            (c->np[row] > 0 || !is_idle(c, row) || is_awake(batch->sim, c, row)))
-            batch->ahead[n++] = (int32_t)row;
+    for (; contact < c->n && n < POLY_CONTACTS; contact++)
+        if ((batch->is_platens || !columns->is_linearised[contact]) &&
+            (c->np[contact] > 0 || !is_idle(c, contact) || is_awake(batch->sim, c, contact)))
+            batch->ahead[n++] = (int32_t)contact;
     batch->n_ahead = n;
-    return row;
+    return contact;
 }
 
 /* Fetching is inlined into what has effects: compilers leave out calls that only fetch. */
@@ -138,16 +138,16 @@ static void take_contacts(struct poly_batch *batch)
     const struct brc_contacts *c = batch->contacts;
     int32_t n = batch->n_ahead;
     for (int32_t i = 0; i < n; i++) {
-        int32_t row = batch->ahead[i];
-        batch->row[i] = row;
-        batch->a[i] = c->a[row];
-        batch->b[i] = c->b[row];
-        batch->listed[i] = c->np[row] > 0;
+        int32_t contact = batch->ahead[i];
+        batch->contact[i] = contact;
+        batch->a[i] = c->a[contact];
+        batch->b[i] = c->b[contact];
+        batch->listed[i] = c->np[contact] > 0;
     }
     batch->n_contacts = n;
     memset(batch->energy, 0, (size_t)n * sizeof *batch->energy);
     for (; n % BRC_LANES != 0; n++) {
-        batch->row[n] = batch->row[n - 1];
+        batch->contact[n] = batch->contact[n - 1];
         batch->a[n] = batch->a[n - 1];
         batch->b[n] = batch->b[n - 1];
     }
@@ -162,20 +162,20 @@ static int prepare(struct poly_batch *batch, int32_t i)
     const struct brc_contacts *c = batch->contacts;
     const struct poly_contacts *columns = c->model_columns;
     struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    size_t row = (size_t)batch->row[i];
+    size_t contact = (size_t)batch->contact[i];
     int lane = i % BRC_LANES;
     if (batch->is_platens) {
-        if (is_awake(sim, c, row)) {
-            BRC_TRY(poly_list_platen(sim, batch->st, row));
-            BRC_TRY(poly_foresee(sim, batch->st, row, true));
+        if (is_awake(sim, c, contact)) {
+            BRC_TRY(poly_list_platen(sim, batch->st, contact));
+            BRC_TRY(poly_foresee(sim, batch->st, contact, true));
         }
-    } else if (batch->listed[i] ? columns->skin_left[row] <= 0 : is_awake(sim, c, row)) {
-        BRC_TRY(poly_list_contact(sim, batch->st, row));
-        if (c->status[row] != BRC_INTACT)
-            BRC_TRY(poly_foresee(sim, batch->st, row, false));
+    } else if (batch->listed[i] ? columns->skin_left[contact] <= 0 : is_awake(sim, c, contact)) {
+        BRC_TRY(poly_list_contact(sim, batch->st, contact));
+        if (c->status[contact] != BRC_INTACT)
+            BRC_TRY(poly_foresee(sim, batch->st, contact, false));
     }
-    batch->listed[i] = c->np[row] > 0; /* by the list just made */
-    g->gap[lane] = columns->rebuild_at[row] - sim->bodies.path_length[batch->a[i]] -
+    batch->listed[i] = c->np[contact] > 0; /* by the list just made */
+    g->gap[lane] = columns->rebuild_at[contact] - sim->bodies.path_length[batch->a[i]] -
                    sim->bodies.path_length[batch->b[i]];
     if (!batch->is_platens && g->broken[lane] > 1 && poly_params_of(sim)->breakable)
         break_bond(batch, i);
@@ -186,10 +186,10 @@ static void store_contact(struct poly_batch *batch, int32_t i)
 {
     struct brc_contacts *c = batch->contacts;
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    size_t row = (size_t)batch->row[i];
+    size_t contact = (size_t)batch->contact[i];
     int lane = i % BRC_LANES;
-    c->gap[row] = g->gap[lane];
-    store_stiffness(c, row, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
+    c->gap[contact] = g->gap[lane];
+    store_stiffness(c, contact, (double[]){g->k[0][lane], g->k[1][lane], g->k[2][lane]});
 }
 
 /* The works of contact i of the batch, and what else it has booked, on the accounts of a. The sum
@@ -224,7 +224,7 @@ static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct pol
     batch->loop = is_platens ? &st->kernels.platens : &st->kernels.pairs;
     batch->law = (struct poly_spring_law){kn, kt, poly_most(kn, kt), p->mu * kn / kt};
     batch->len = (struct poly_lengths){radius + radius, radius, POLY_LIST_SKIN * radius};
-    batch->pair_of_row = -1;
+    batch->pair_of_contact = -1;
     batch->n_points = 0;
     batch->viscous = poly_is_viscous(sim);
     memset(batch->is_stable, 0, sizeof batch->is_stable);
@@ -235,10 +235,10 @@ static void work_through(struct poly_batch *batch, bool linearised)
 {
     /* The contacts of a batch are chosen before the last one is worked off, for their memory to
      * be fetched meanwhile. */
-    size_t row = look_ahead(batch, 0);
+    size_t contact = look_ahead(batch, 0);
     while (batch->n_ahead > 0) {
         take_contacts(batch);
-        row = look_ahead(batch, row);
+        contact = look_ahead(batch, contact);
         fetch_contacts(batch, linearised);
         batch->loop->motion(batch);
         for (int32_t i = 0; i < batch->n_contacts; i++) {

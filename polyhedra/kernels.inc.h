@@ -15,14 +15,14 @@
 /* --- sums of contacts
  * ----------------------------------------------------------------------------- */
 
-/* The points' sums of a group's contacts. Sums are kept contact by contact, since points add to
+/* The points' sums of the contacts of a four. Sums are kept contact by contact, since points add to
  * whichever contact is theirs; four contacts side by side are their transpose. */
 BRC_LANES_INLINE void poly_sums_of_four(brc_lanes r[POLY_SUMS], const struct poly_batch *batch,
                                         int32_t four, int n)
 {
     for (int i = 0; i < n; i += BRC_LANES) {
-        for (int row = 0; row < BRC_LANES; row++)
-            r[i + row] = brc_lanes_at(&batch->sum[BRC_LANES * four + row][i]);
+        for (int lane = 0; lane < BRC_LANES; lane++)
+            r[i + lane] = brc_lanes_at(&batch->sum[BRC_LANES * four + lane][i]);
         brc_lanes_transpose(r + i);
     }
 }
@@ -30,35 +30,35 @@ BRC_LANES_INLINE void poly_sums_of_four(brc_lanes r[POLY_SUMS], const struct pol
 /* Work taken up by the source of a wrench over the step, by the trapezoid rule of ledger.h; the
  * wrench becomes the old one. */
 BRC_LANES_INLINE brc_lanes poly_work(double (*old)[6], const struct poly_wrench4 *now,
-                                     const struct poly_contact4 *g, const int32_t row[BRC_LANES],
-                                     double dt)
+                                     const struct poly_contact4 *g,
+                                     const int32_t contact[BRC_LANES], double dt)
 {
     struct poly_wrench4 w;
     brc_lanes x_old[3], all[6];
-    brc_lanes_gather6(all, old, row);
+    brc_lanes_gather6(all, old, contact);
     poly_set3(w.f, all[0], all[1], all[2]);
     poly_set3(w.m, all[3], all[4], all[5]);
     for (int k = 0; k < 3; k++)
         x_old[k] = g->x[k] - g->dv[k] * dt;
     poly_set3(all, now->f[0], now->f[1], now->f[2]);
     poly_set3(all + 3, now->m[0], now->m[1], now->m[2]);
-    brc_lanes_scatter6(old, row, all);
+    brc_lanes_scatter6(old, contact, all);
     return -0.5 * dt * (poly_power(&w, g, x_old) + poly_power(now, g, g->x));
 }
 
 BRC_LANES_INLINE void poly_works_of_four(struct poly_batch *batch, struct poly_contact4 *g,
-                                         const int32_t *row, const struct poly_wrench4 *normal,
+                                         const int32_t *contact, const struct poly_wrench4 *normal,
                                          const struct poly_wrench4 *sticky, const bool viscous)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
     double dt = batch->sim->dt;
-    g->work_normal = poly_work(columns->normal_old, normal, g, row, dt);
-    g->work_bond = poly_work(columns->bond_old, &g->bond, g, row, dt);
+    g->work_normal = poly_work(columns->normal_old, normal, g, contact, dt);
+    g->work_bond = poly_work(columns->bond_old, &g->bond, g, contact, dt);
     if (viscous)
-        g->work_viscous = poly_work(columns->viscous_old, sticky, g, row, dt);
+        g->work_viscous = poly_work(columns->viscous_old, sticky, g, contact, dt);
 }
 
-/* Forces and moments of the contacts of a group, and what else they need. Where contacts may be
+/* Forces and moments of the contacts of a four, and what else they need. Where contacts may be
  * linearised, one work is booked for all that acts, since the tangent does not tell bond and
  * springs apart; otherwise each source has its own. */
 BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, const bool ledger,
@@ -66,7 +66,7 @@ BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, c
 {
     const struct brc_contacts *c = batch->contacts;
     struct poly_contact4 *g = &batch->four[four];
-    const int32_t *row = batch->row + BRC_LANES * four;
+    const int32_t *contact = batch->contact + BRC_LANES * four;
     brc_lanes s[POLY_SUMS];
     struct poly_wrench4 normal, sticky, all;
     poly_sums_of_four(s, batch, four, viscous ? POLY_SUMS : POLY_SUM_SLID + 4);
@@ -87,12 +87,12 @@ BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, c
     g->stored = s[POLY_SUM_STORED];
     g->slid = s[POLY_SUM_SLID];
     if (ledger && linearised) {
-        g->work_normal = poly_work_of_four(c, &all, g, row, batch->sim->dt) - g->slid;
+        g->work_normal = poly_work_of_four(c, &all, g, contact, batch->sim->dt) - g->slid;
         g->work_bond = brc_lanes_all(0);
     } else if (ledger) {
-        poly_works_of_four(batch, g, row, &normal, &sticky, viscous);
+        poly_works_of_four(batch, g, contact, &normal, &sticky, viscous);
     }
-    poly_put_wrenches(c, &all, g, row);
+    poly_put_wrenches(c, &all, g, contact);
 }
 
 BRC_LANES_INLINE void poly_finish_kernel(struct poly_batch *batch, const bool ledger,

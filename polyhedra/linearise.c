@@ -10,7 +10,7 @@ static const double WORTH_STEPS = 3;
 void poly_account_bond(struct poly_batch *batch, int32_t i, double stored)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
-    double *last = &columns->motion[batch->row[i]][POLY_MOTION_STORED], gained = stored - *last;
+    double *last = &columns->motion[batch->contact[i]][POLY_MOTION_STORED], gained = stored - *last;
     *last = stored;
     batch->energy[i][BRC_ACCOUNT_BOND] += gained;
     batch->energy[i][BRC_ACCOUNT_NORMAL] -= gained;
@@ -53,13 +53,13 @@ static void add_bond(const struct poly_contact4 *g, int lane, double force[6], d
  * which no vertex of `strict` leaves its face, since one of its edges comes or goes across the
  * face's then. They stand sorted by when they wake up, so the first that counts ends the search.
  * Edges that fade are left out: they come and go with a weight that begins at 0 (README.md). */
-static double path_of_sleepers(const struct brc_contacts *c, size_t row, double most)
+static double path_of_sleepers(const struct brc_contacts *c, size_t contact, double most)
 {
     const struct poly_contacts *columns = c->model_columns;
     const struct poly_points *points = c->point_columns;
-    size_t p = (size_t)c->p0[row] + (size_t)columns->awake[row];
-    size_t end = (size_t)c->p0[row] + (size_t)c->np[row];
-    double skin_left = columns->skin_left[row];
+    size_t p = (size_t)c->p0[contact] + (size_t)columns->awake[contact];
+    size_t end = (size_t)c->p0[contact] + (size_t)c->np[contact];
+    double skin_left = columns->skin_left[contact];
     most = poly_least(most, skin_left);
     for (; p < end && skin_left - points->sleep[p] < most; p++)
         if (points->kind[p] != POLY_EDGES || points->feature_valid_to[p] != POLY_FADES)
@@ -76,7 +76,7 @@ static double path_of_bond(const struct poly_batch *batch, int32_t i)
     const struct poly_params *p = poly_params_of(batch->sim);
     const struct poly_contacts *columns = batch->contacts->model_columns;
     const struct poly_contact4 *g = &batch->four[i / BRC_LANES];
-    double length = columns->bond[batch->row[i]][POLY_BOND_LENGTH];
+    double length = columns->bond[batch->contact[i]][POLY_BOND_LENGTH];
     double slope = 2 / (length * p->eps_th), path = 0.5 * fabs(g->opening[i % BRC_LANES]);
     if (p->torsion && p->theta_limit)
         slope += 1 / (batch->sim->bodies.bounding_radius[batch->b[i]] * p->theta_th);
@@ -89,13 +89,13 @@ static double path_left(const struct poly_batch *batch, int32_t i)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
     const struct brc_contacts *c = batch->contacts;
-    size_t row = (size_t)batch->row[i];
+    size_t contact = (size_t)batch->contact[i];
     /* The limit by accuracy first; what may begin to touch, or break, only shortens it. */
     double most = p->condensed_path * p->radius;
-    if (c->status[row] == BRC_INTACT)
+    if (c->status[contact] == BRC_INTACT)
         most = poly_least(most, path_of_bond(batch, i));
     if (batch->listed[i])
-        return path_of_sleepers(c, row, most);
+        return path_of_sleepers(c, contact, most);
     return poly_least(batch->four[i / BRC_LANES].gap[i % BRC_LANES], most);
 }
 
@@ -111,7 +111,7 @@ static bool is_long(const struct poly_batch *batch, int32_t i, double path)
 void poly_begin_tangent(struct poly_batch *batch, int32_t i)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
-    bool is_whole = !batch->listed[i] || columns->ready[batch->row[i]];
+    bool is_whole = !batch->listed[i] || columns->ready[batch->contact[i]];
     batch->will_linearise[i] = is_whole && is_long(batch, i, path_left(batch, i));
     if (batch->will_linearise[i])
         memset(batch->tangent[i], 0, sizeof batch->tangent[i]);
@@ -123,13 +123,13 @@ void poly_linearise(struct poly_batch *batch, int32_t i)
 {
     struct brc_sim *sim = batch->sim;
     const struct poly_contacts *columns = sim->pairs.model_columns;
-    size_t row = (size_t)batch->row[i];
-    bool is_intact = sim->pairs.status[row] == BRC_INTACT;
-    double *motion = columns->motion[row];
+    size_t contact = (size_t)batch->contact[i];
+    bool is_intact = sim->pairs.status[contact] == BRC_INTACT;
+    double *motion = columns->motion[contact];
     double stored = is_intact ? batch->four[i / BRC_LANES].bond_stored[i % BRC_LANES] : 0;
     if (is_intact)
         poly_account_bond(batch, i, stored);
-    memset(motion, 0, sizeof columns->motion[row]);
+    memset(motion, 0, sizeof columns->motion[contact]);
     motion[POLY_MOTION_STORED] = stored;
     /* A point that is awake and apart may touch within a few steps. Rather than to look for its
      * bound here, the contact waits until it sleeps: then it has one. */
@@ -139,12 +139,12 @@ void poly_linearise(struct poly_batch *batch, int32_t i)
     if (!is_long(batch, i, end))
         return;
     motion[POLY_MOTION_END] = end;
-    columns->is_linearised[row] = 1;
+    columns->is_linearised[contact] = 1;
     for (int k = 0; k < 6; k++)
-        columns->linearised_force[row][k] =
+        columns->linearised_force[contact][k] =
             batch->sum[i][POLY_SUM_NORMAL + k] + batch->sum[i][POLY_SUM_SHEAR + k];
-    memcpy(columns->tangent[row], batch->tangent[i], sizeof columns->tangent[row]);
+    memcpy(columns->tangent[contact], batch->tangent[i], sizeof columns->tangent[contact]);
     if (is_intact)
-        add_bond(&batch->four[i / BRC_LANES], i % BRC_LANES, columns->linearised_force[row],
-                 (double(*)[6])columns->tangent[row]);
+        add_bond(&batch->four[i / BRC_LANES], i % BRC_LANES, columns->linearised_force[contact],
+                 (double(*)[6])columns->tangent[contact]);
 }

@@ -13,15 +13,15 @@
 BRC_LANES_INLINE void poly_tangent_forces(struct poly_wrench4 *w,
                                           const struct poly_contacts *columns,
                                           const struct poly_motion4 *s,
-                                          const int32_t row[BRC_LANES])
+                                          const int32_t contact[BRC_LANES])
 {
     const brc_lanes motion[6] = {s->d[0], s->d[1], s->d[2], s->turn[0], s->turn[1], s->turn[2]};
     brc_lanes first[BRC_LANES], last[BRC_LANES]; /* of six, which begin at 0 and at 2 */
     brc_lanes both[3], turned[3];
     for (int k = 0; k < BRC_LANES; k++) {
-        const double *slope = columns->tangent[row[k]];
-        first[k] = brc_lanes_at(columns->linearised_force[row[k]]);
-        last[k] = brc_lanes_at(columns->linearised_force[row[k]] + 2);
+        const double *slope = columns->tangent[contact[k]];
+        first[k] = brc_lanes_at(columns->linearised_force[contact[k]]);
+        last[k] = brc_lanes_at(columns->linearised_force[contact[k]] + 2);
         for (int j = 0; j < 6; j++) {
             brc_lanes by = brc_lanes_all(((const double *)&motion[j])[k]);
             first[k] -= brc_lanes_at(slope + 6 * j) * by;
@@ -45,11 +45,11 @@ BRC_LANES_INLINE void poly_tangent_forces(struct poly_wrench4 *w,
 BRC_LANES_INLINE brc_lanes poly_work_of_four(const struct brc_contacts *c,
                                              const struct poly_wrench4 *w,
                                              const struct poly_contact4 *g,
-                                             const int32_t row[BRC_LANES], double dt)
+                                             const int32_t contact[BRC_LANES], double dt)
 {
     brc_lanes f[3], m[3], u[3], dw[3], back[3];
-    brc_lanes_gather3(f, c->f, row);
-    brc_lanes_gather3(m, c->ta, row); /* on a */
+    brc_lanes_gather3(f, c->f, contact);
+    brc_lanes_gather3(m, c->ta, contact); /* on a */
     brc_lanes_cross(u, g->x, g->wb);
     poly_add3(u, g->dv, u);
     poly_sub3(dw, g->wb, g->wa);
@@ -72,7 +72,7 @@ BRC_LANES_INLINE brc_mask poly_turns_far(const struct poly_batch *batch,
  * their path, none is moved, and the others come first in i. None is moved, as a store to some
  * lanes alone would cost all of them; those that stay are taken again with the next ones, so that
  * no lane's result depends on the others. */
-BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_numbers4 *i, int n,
+BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_index4 *i, int n,
                                           const bool ledger)
 {
     const struct brc_contacts *c = batch->contacts;
@@ -82,31 +82,31 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
     struct poly_frame4 f;
     struct poly_motion4 s;
     for (int k = 0; k < BRC_LANES; k++) {
-        i->row[k] = i->row[k < n ? k : 0];
-        i->a[k] = c->a[i->row[k]];
-        i->b[k] = c->b[i->row[k]];
+        i->contact[k] = i->contact[k < n ? k : 0];
+        i->a[k] = c->a[i->contact[k]];
+        i->b[k] = c->b[i->contact[k]];
     }
     poly_motion_of_four(batch, &g, &f, i, false);
-    poly_motion_gather(&s, columns, i->row);
+    poly_motion_gather(&s, columns, i->contact);
     poly_motion_add_step(&s, &f, &g, batch->sim->dt);
     brc_mask stays = brc_lanes_less(s.path, s.end) & ~poly_turns_far(batch, &s);
     if (brc_lanes_any(~stays)) {
         int left = 0;
         for (int k = 0; k < n; k++) {
-            columns->is_linearised[i->row[k]] = stays[k] != 0;
-            i->row[left] = i->row[k];
+            columns->is_linearised[i->contact[k]] = stays[k] != 0;
+            i->contact[left] = i->contact[k];
             left += stays[k] != 0;
         }
         return left;
     }
-    poly_tangent_forces(&w, columns, &s, i->row);
-    poly_motion_put(columns, i->row, &s);
+    poly_tangent_forces(&w, columns, &s, i->contact);
+    poly_motion_put(columns, i->contact, &s);
     if (ledger) {
-        brc_lanes work = poly_work_of_four(c, &w, &g, i->row, batch->sim->dt);
+        brc_lanes work = poly_work_of_four(c, &w, &g, i->contact, batch->sim->dt);
         for (int k = 0; k < n; k++)
             batch->sim->bodies.energy[i->a[k]][BRC_ACCOUNT_NORMAL] += work[k];
     }
-    poly_put_wrenches(c, &w, &g, i->row);
+    poly_put_wrenches(c, &w, &g, i->contact);
     return 0;
 }
 
@@ -116,11 +116,11 @@ BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const boo
 {
     const struct brc_contacts *c = batch->contacts;
     const struct poly_contacts *columns = c->model_columns;
-    struct poly_numbers4 i;
+    struct poly_index4 i;
     int n = 0;
-    for (size_t row = 0; row < c->n; row++) {
-        i.row[n] = (int32_t)row;
-        n += columns->is_linearised[row];
+    for (size_t contact = 0; contact < c->n; contact++) {
+        i.contact[n] = (int32_t)contact;
+        n += columns->is_linearised[contact];
         if (n == BRC_LANES)
             n = poly_move_linearised(batch, &i, n, ledger);
     }

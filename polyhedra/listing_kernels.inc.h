@@ -76,13 +76,13 @@ BRC_LANES_INLINE double poly_measure_heights(struct poly_seen *s)
 static const int32_t poly_none_near[POLY_NEAR] = {POLY_NONE_NEAR, POLY_NONE_NEAR, POLY_NONE_NEAR,
                                                   POLY_NONE_NEAR};
 
-/* Vertex v of the own core and a face or place of the other. */
+/* Vertex v of the own core and a face or closest feature of the other. */
 static int poly_list_add_vertex(struct brc_context *ctx, struct poly_list *l, bool of_b, int32_t v,
-                                int32_t place, const int32_t near[POLY_NEAR], double gap)
+                                int32_t feature, const int32_t near[POLY_NEAR], double gap)
 {
     struct poly_feature f = {.free = gap,
-                             .i = of_b ? place : v,
-                             .j = of_b ? v : place,
+                             .i = of_b ? feature : v,
+                             .j = of_b ? v : feature,
                              .kind = of_b ? POLY_VERTEX_B : POLY_VERTEX_A};
     memcpy(f.near, near, sizeof f.near);
     return poly_list_add(ctx, l, &f);

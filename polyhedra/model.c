@@ -76,7 +76,8 @@ static int create(struct brc_sim *sim, void **state)
     size_t size = (sizeof *st->batch + 63) / 64 * 64;
     st->batch = aligned_alloc(64, size);
     if (st->batch == NULL)
-        BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a batch of rows", size);
+        BRC_FAIL(sim->ctx, BRC_ERR_MEMORY, "out of memory: %zu bytes for a batch of contacts",
+                 size);
     memset(st->batch, 0, size);
     /* Asked before the value is set, for the header has to say which it was. */
     st->is_scaled = isnan(p->kn);

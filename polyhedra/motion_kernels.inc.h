@@ -9,17 +9,17 @@
 
 #include <string.h>
 
-/* The contacts of a group, as gathers want them. */
-struct poly_numbers4 {
-    int32_t row[BRC_LANES], a[BRC_LANES], b[BRC_LANES];
+/* The contacts of a four, as gathers want them. */
+struct poly_index4 {
+    int32_t contact[BRC_LANES], a[BRC_LANES], b[BRC_LANES];
 };
 
-BRC_LANES_INLINE void poly_numbers_of(struct poly_numbers4 *i, const struct poly_batch *batch,
-                                      int32_t group)
+BRC_LANES_INLINE void poly_index_of(struct poly_index4 *i, const struct poly_batch *batch,
+                                    int32_t four)
 {
-    memcpy(i->row, batch->row + BRC_LANES * group, sizeof i->row);
-    memcpy(i->a, batch->a + BRC_LANES * group, sizeof i->a);
-    memcpy(i->b, batch->b + BRC_LANES * group, sizeof i->b);
+    memcpy(i->contact, batch->contact + BRC_LANES * four, sizeof i->contact);
+    memcpy(i->a, batch->a + BRC_LANES * four, sizeof i->a);
+    memcpy(i->b, batch->b + BRC_LANES * four, sizeof i->b);
 }
 
 /* r += s (w x (w x a)) */
@@ -88,7 +88,7 @@ BRC_LANES_INLINE brc_lanes poly_power(const struct poly_wrench4 *w, const struct
     return brc_lanes_dot(w->f, g->dv) - brc_lanes_dot(w->m, g->wa) + brc_lanes_dot(tb, g->wb);
 }
 
-/* Lane i to the frame of contact i. A row for each contact, since a point wants all of one contact,
+/* Lane i to the frame of contact i. Contact by contact, since a point wants all of one contact,
  * and its neighbours in the lanes belong to others. */
 BRC_LANES_INLINE void poly_put_frames(double (*to)[POLY_FRAME], struct poly_frame4 *f)
 {
@@ -118,7 +118,7 @@ BRC_LANES_INLINE brc_lanes poly_relative_path(const struct poly_contact4 *g,
 
 /* Viscosity and friction. A platen does not give way: the mass that swings at it is the grain's. */
 BRC_LANES_INLINE void poly_laws_of_four(struct poly_frame4 *f, const struct poly_batch *batch,
-                                        const struct poly_numbers4 *i, const bool is_platens)
+                                        const struct poly_index4 *i, const bool is_platens)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
     f->gn = f->gt = brc_lanes_all(0);
@@ -139,7 +139,7 @@ BRC_LANES_INLINE void poly_laws_of_four(struct poly_frame4 *f, const struct poly
 }
 
 BRC_LANES_INLINE void poly_motion_of_four(const struct poly_batch *batch, struct poly_contact4 *g,
-                                          struct poly_frame4 *f, const struct poly_numbers4 *i,
+                                          struct poly_frame4 *f, const struct poly_index4 *i,
                                           const bool is_platens)
 {
     const struct brc_bodies *bodies = &batch->sim->bodies;
@@ -179,7 +179,7 @@ struct poly_halves4 {
 };
 
 /* Constants of the bonds; zero stiffness where there is none. By zero stiffness and not by a
- * branch: three of four contacts of a group may be intact. */
+ * branch: three of four contacts of a four may be intact. */
 BRC_LANES_INLINE void poly_bond_constants(struct poly_bonds4 *bonds, const struct poly_params *p,
                                           const struct poly_halves4 *halves, brc_mask intact,
                                           const bool torsion)
@@ -210,7 +210,7 @@ BRC_LANES_INLINE void poly_gather_rotation(brc_lanes r[9], double (*rotation)[3]
 /* The hold of a platen is half a bond: without torsion and, unless it holds in all directions,
  * without shear. The platen is rigid and does not turn: its normal is the hold's. */
 BRC_LANES_INLINE void poly_bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond_pose4 *pose,
-                                          const struct brc_sim *sim, const struct poly_numbers4 *i,
+                                          const struct brc_sim *sim, const struct poly_index4 *i,
                                           const brc_lanes nb[3])
 {
     brc_lanes back[3];
@@ -227,14 +227,15 @@ BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
                                              struct poly_bond_pose4 *pose,
                                              const struct brc_sim *sim, const struct poly_state *st,
                                              const struct brc_contacts *c,
-                                             const struct poly_numbers4 *i, const brc_lanes x[3],
+                                             const struct poly_index4 *i, const brc_lanes x[3],
                                              const bool torsion, const bool is_platens)
 {
     const struct poly_contacts *columns = c->model_columns;
-    const double *const from[BRC_LANES] = {columns->bond[i->row[0]], columns->bond[i->row[1]],
-                                           columns->bond[i->row[2]], columns->bond[i->row[3]]};
-    const uint8_t status[BRC_LANES] = {c->status[i->row[0]], c->status[i->row[1]],
-                                       c->status[i->row[2]], c->status[i->row[3]]};
+    const double *const from[BRC_LANES] = {
+        columns->bond[i->contact[0]], columns->bond[i->contact[1]], columns->bond[i->contact[2]],
+        columns->bond[i->contact[3]]};
+    const uint8_t status[BRC_LANES] = {c->status[i->contact[0]], c->status[i->contact[1]],
+                                       c->status[i->contact[2]], c->status[i->contact[3]]};
     brc_mask intact = brc_lanes_equal(status, BRC_INTACT);
     brc_lanes ra[9], rb[9], na[3], nb[3], ta[3], tb[3];
     struct poly_halves4 halves;
@@ -264,7 +265,7 @@ BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
 
 /* Wrench, stiffness, energy and breaking of the bonds of four contacts. */
 BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_contact4 *g,
-                                       const struct poly_numbers4 *i, const bool torsion,
+                                       const struct poly_index4 *i, const bool torsion,
                                        const bool linearised, const bool is_platens)
 {
     struct poly_bonds4 bonds;
@@ -299,18 +300,18 @@ BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_con
  * have nothing to decide in this step. One contact after the other, since these columns are read at
  * scattered places and hardly anything is computed with them. */
 BRC_LANES_INLINE void poly_skins_of_four(struct poly_batch *batch, struct poly_contact4 *g,
-                                         brc_lanes used, int32_t group)
+                                         brc_lanes used, int32_t four)
 {
     const struct brc_bodies *bodies = &batch->sim->bodies;
     const struct poly_contacts *columns = batch->contacts->model_columns;
-    for (int32_t k = 0, i = BRC_LANES * group; k < BRC_LANES && i < batch->n_contacts; k++, i++) {
-        size_t row = (size_t)batch->row[i];
-        double path_a = bodies->path_length[batch->a[i]], rebuild_at = columns->rebuild_at[row];
+    for (int32_t k = 0, i = BRC_LANES * four; k < BRC_LANES && i < batch->n_contacts; k++, i++) {
+        size_t contact = (size_t)batch->contact[i];
+        double path_a = bodies->path_length[batch->a[i]], rebuild_at = columns->rebuild_at[contact];
         g->gap[k] = rebuild_at - path_a - bodies->path_length[batch->b[i]];
         if (batch->listed[i]) {
-            columns->skin_left[row] -= used[k];
-            batch->is_stable[i] =
-                columns->ready[row] && columns->skin_left[row] > columns->stable_above[row];
+            columns->skin_left[contact] -= used[k];
+            batch->is_stable[i] = columns->ready[contact] &&
+                                  columns->skin_left[contact] > columns->stable_above[contact];
         } else {
             batch->is_stable[i] = path_a + bodies->path_length[batch->b[i]] < rebuild_at;
         }
@@ -320,7 +321,8 @@ BRC_LANES_INLINE void poly_skins_of_four(struct poly_batch *batch, struct poly_c
 
 /* The contacts' columns: force on b and moments about both centres of a wrench about that of a. */
 BRC_LANES_INLINE void poly_put_wrenches(const struct brc_contacts *c, const struct poly_wrench4 *w,
-                                        const struct poly_contact4 *g, const int32_t row[BRC_LANES])
+                                        const struct poly_contact4 *g,
+                                        const int32_t contact[BRC_LANES])
 {
     brc_lanes ta[3], tb[3];
     brc_lanes_cross(tb, g->x, w->f);
@@ -328,9 +330,9 @@ BRC_LANES_INLINE void poly_put_wrenches(const struct brc_contacts *c, const stru
         ta[k] = -w->m[k];
         tb[k] = -ta[k] - tb[k];
     }
-    brc_lanes_scatter3(c->f, row, w->f);
-    brc_lanes_scatter3(c->ta, row, ta);
-    brc_lanes_scatter3(c->tb, row, tb);
+    brc_lanes_scatter3(c->f, contact, w->f);
+    brc_lanes_scatter3(c->ta, contact, ta);
+    brc_lanes_scatter3(c->tb, contact, tb);
 }
 
 /* --- linearised contacts
@@ -343,21 +345,22 @@ struct poly_motion4 {
 
 BRC_LANES_INLINE void poly_motion_gather(struct poly_motion4 *s,
                                          const struct poly_contacts *columns,
-                                         const int32_t row[BRC_LANES])
+                                         const int32_t contact[BRC_LANES])
 {
-    const double *const from[BRC_LANES] = {columns->motion[row[0]], columns->motion[row[1]],
-                                           columns->motion[row[2]], columns->motion[row[3]]};
+    const double *const from[BRC_LANES] = {columns->motion[contact[0]], columns->motion[contact[1]],
+                                           columns->motion[contact[2]],
+                                           columns->motion[contact[3]]};
     poly_gather_fours((brc_lanes *)s, from, POLY_MOTION);
 }
 
 BRC_LANES_INLINE void poly_motion_put(const struct poly_contacts *columns,
-                                      const int32_t row[BRC_LANES], struct poly_motion4 *s)
+                                      const int32_t contact[BRC_LANES], struct poly_motion4 *s)
 {
     brc_lanes *part = (brc_lanes *)s;
     for (int k = 0; k < POLY_MOTION; k += BRC_LANES) {
         brc_lanes_transpose(part + k);
         for (int i = 0; i < BRC_LANES; i++)
-            brc_lanes_put(columns->motion[row[i]] + k, part[k + i]);
+            brc_lanes_put(columns->motion[contact[i]] + k, part[k + i]);
     }
 }
 
@@ -379,12 +382,12 @@ BRC_LANES_INLINE void poly_motion_add_step(struct poly_motion4 *s, const struct 
  * in one increment now. */
 BRC_LANES_INLINE brc_lanes poly_frames_since(const struct poly_batch *batch, struct poly_frame4 *f,
                                              const struct poly_contact4 *g,
-                                             const struct poly_numbers4 *i)
+                                             const struct poly_index4 *i)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
     const brc_lanes none = brc_lanes_all(0);
     struct poly_motion4 s;
-    poly_motion_gather(&s, columns, i->row);
+    poly_motion_gather(&s, columns, i->contact);
     poly_motion_add_step(&s, f, g, batch->sim->dt);
     for (int k = 0; k < 3; k++) {
         f->slip[k] = s.d[k];
@@ -403,16 +406,16 @@ BRC_LANES_INLINE void poly_motion_kernel(struct poly_batch *batch, const bool to
     poly_clear((brc_lanes *)batch->sum, sizeof batch->sum);
     for (int32_t four = 0; BRC_LANES * four < batch->n_contacts; four++) {
         struct poly_contact4 *g = &batch->four[four];
-        struct poly_numbers4 i;
+        struct poly_index4 i;
         struct poly_frame4 f;
         bool has_bond = false;
-        poly_numbers_of(&i, batch, four);
+        poly_index_of(&i, batch, four);
         poly_motion_of_four(batch, g, &f, &i, is_platens);
         brc_lanes used = g->path;
         if (linearised)
             used = poly_frames_since(batch, &f, g, &i);
         for (int k = 0; k < BRC_LANES; k++)
-            has_bond |= c->status[i.row[k]] == BRC_INTACT;
+            has_bond |= c->status[i.contact[k]] == BRC_INTACT;
         g->k[0] = g->k[1] = g->k[2] = g->broken = g->bond_stored = brc_lanes_all(0);
         poly_clear((brc_lanes *)&g->bond, sizeof g->bond);
         if (has_bond)

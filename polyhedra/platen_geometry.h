@@ -50,19 +50,19 @@ BRC_LANES_INLINE brc_mask poly_platen_geometry(struct poly_geometry4 *t, const s
 
 /* Number of the vertex of a point of a platen contact. */
 static inline int32_t poly_platen_vertex(const struct brc_sim *sim, const struct poly_state *st,
-                                         size_t row, size_t p)
+                                         size_t contact, size_t p)
 {
     const struct poly_points *points = sim->platens.point_columns;
-    return (int32_t)st->shapes.vertex_first[sim->platens.a[row]] + points->i[p];
+    return (int32_t)st->shapes.vertex_first[sim->platens.a[contact]] + points->i[p];
 }
 
 /* A point of a platen contact alone. */
 static inline bool poly_platen_contact(struct poly_geometry *t, const struct brc_sim *sim,
-                                       const struct poly_state *st, size_t row, size_t p,
+                                       const struct poly_state *st, size_t contact, size_t p,
                                        double skin)
 {
-    int32_t v = poly_platen_vertex(sim, st, row, p), vertex[BRC_LANES] = {v, v, v, v};
-    int32_t b = sim->platens.b[row], body[BRC_LANES] = {b, b, b, b};
+    int32_t v = poly_platen_vertex(sim, st, contact, p), vertex[BRC_LANES] = {v, v, v, v};
+    int32_t b = sim->platens.b[contact], body[BRC_LANES] = {b, b, b, b};
     struct poly_geometry4 all;
     brc_mask touches = poly_platen_geometry(&all, sim, st, vertex, body, skin);
     poly_geometry_lane(t, &all, 0);

@@ -143,10 +143,10 @@ BRC_LANES_INLINE void poly_platens_of_tasks(struct poly_geometry4 *t,
 {
     int32_t vertex[BRC_LANES], platen[BRC_LANES];
     for (int k = 0; k < BRC_LANES; k++) {
-        int32_t row = task[k].row < batch->n_contacts ? task[k].row : 0;
-        vertex[k] = poly_platen_vertex(batch->sim, batch->st, (size_t)batch->row[row],
+        int32_t contact = task[k].contact < batch->n_contacts ? task[k].contact : 0;
+        vertex[k] = poly_platen_vertex(batch->sim, batch->st, (size_t)batch->contact[contact],
                                        (size_t)task[k].point);
-        platen[k] = batch->b[row];
+        platen[k] = batch->b[contact];
     }
     poly_platen_geometry(t, batch->sim, batch->st, vertex, platen, 0);
 }
@@ -156,7 +156,7 @@ BRC_LANES_INLINE void poly_platens_of_tasks(struct poly_geometry4 *t,
 /* Adds the stiffness of four points to the tangents of their contacts. Columns of 6 for shifts and
  * turns of b about the centre of a. A shift d of the contact gives a d; a turn moves it by the
  * cross product with the arm, and changes the weight by its couple c besides. */
-BRC_LANES_INLINE void poly_add_tangents(struct poly_batch *batch, const int32_t row[BRC_LANES],
+BRC_LANES_INLINE void poly_add_tangents(struct poly_batch *batch, const int32_t contact[BRC_LANES],
                                         const struct poly_geometry4 *t, const brc_lanes xi[3],
                                         brc_mask slips, const brc_lanes arm[3], const bool friction)
 {
@@ -175,24 +175,25 @@ BRC_LANES_INLINE void poly_add_tangents(struct poly_batch *batch, const int32_t 
     for (int n = 0; n < 36; n += BRC_LANES) {
         brc_lanes_transpose(k + n);
         for (int i = 0; i < BRC_LANES; i++) {
-            double *to = batch->tangent[row[i]] + n;
+            double *to = batch->tangent[contact[i]] + n;
             brc_lanes_put(to, brc_lanes_at(to) + k[n + i]);
         }
     }
     for (int i = 0; i < BRC_LANES; i++)
         if (t->weight[i] > 0)
-            batch->valid_path[row[i]] = poly_least(batch->valid_path[row[i]], t->valid_path[i]);
+            batch->valid_path[contact[i]] =
+                poly_least(batch->valid_path[contact[i]], t->valid_path[i]);
 }
 
 /* Adds the lanes to the sums of their contacts, one after the other: the points of a contact are
  * summed in the order of the lists. */
-BRC_LANES_INLINE void poly_add_sums(struct poly_batch *batch, const int32_t row[BRC_LANES],
+BRC_LANES_INLINE void poly_add_sums(struct poly_batch *batch, const int32_t contact[BRC_LANES],
                                     brc_lanes *sums, int end)
 {
     for (int k = 0; k < end; k += BRC_LANES) {
         brc_lanes_transpose(sums + k);
         for (int i = 0; i < BRC_LANES; i++) {
-            double *to = batch->sum[row[i]] + k;
+            double *to = batch->sum[contact[i]] + k;
             brc_lanes_put(to, brc_lanes_at(to) + sums[k + i]); /* eq:gt12:6, eq:gt12:7 */
         }
     }
@@ -201,27 +202,28 @@ BRC_LANES_INLINE void poly_add_sums(struct poly_batch *batch, const int32_t row[
 /* Forces of four points, which touch or are apart. Returns where they slip. */
 BRC_LANES_INLINE brc_mask poly_forces_of_points(
     const struct poly_batch *batch, struct poly_sums4 *s, const struct poly_geometry4 *t,
-    const struct poly_frame4 *row, struct poly_springs4 *springs, const brc_lanes arm[3],
+    const struct poly_frame4 *frame, struct poly_springs4 *springs, const brc_lanes arm[3],
     const bool linearised, const bool friction, const bool viscous, const bool ledger)
 {
     const struct poly_spring_law *law = &batch->law;
     brc_lanes back[3], u[3], old = springs->weight, stiff = brc_lanes_all(law->kn);
     brc_mask touches = poly_positive(t->weight), slips = {0};
     springs->weight = brc_lanes_pick(touches, t->weight, old);
-    poly_sub3(back, arm, row->x);
+    poly_sub3(back, arm, frame->x);
     poly_normal_force(&s->normal, t, law->kn, arm);
     if (friction) /* but for platens that have none */
-        stiff = brc_lanes_pick(poly_positive(row->limit), brc_lanes_all(law->stiff), stiff);
+        stiff = brc_lanes_pick(poly_positive(frame->limit), brc_lanes_all(law->stiff), stiff);
     stiff = brc_lanes_where(touches, stiff);
     s->k[0] = stiff;
     s->k[1] = stiff * brc_lanes_dot(arm, arm);
     s->k[2] = stiff * brc_lanes_dot(back, back);
     s->stored = s->slid = brc_lanes_all(0);
     if (friction || viscous)
-        poly_slip_at(u, row, arm);
+        poly_slip_at(u, frame, arm);
     if (friction) {
-        const brc_lanes turn[3] = {row->along[0].turn, row->along[1].turn, row->along[2].turn};
-        struct poly_slip4 slip = {.twirl = brc_lanes_dot(turn, t->n), .limit = row->limit};
+        const brc_lanes turn[3] = {frame->along[0].turn, frame->along[1].turn,
+                                   frame->along[2].turn};
+        struct poly_slip4 slip = {.twirl = brc_lanes_dot(turn, t->n), .limit = frame->limit};
         poly_scale3(slip.du, u, brc_lanes_all(linearised ? 1 : batch->sim->dt));
         slips = poly_shear_force(springs, s, t, &slip, law->kt, arm, brc_lanes_where(touches, old),
                                  ledger);
@@ -230,7 +232,7 @@ BRC_LANES_INLINE brc_mask poly_forces_of_points(
     }
     if (viscous) {
         brc_lanes f[3];
-        poly_viscous_force(f, t, law->kn, row->gn, row->gt, u);
+        poly_viscous_force(f, t, law->kn, frame->gn, frame->gt, u);
         poly_force_at(&s->viscous, f, arm);
     } else {
         poly_clear((brc_lanes *)&s->viscous, sizeof s->viscous);
@@ -250,9 +252,9 @@ BRC_LANES_INLINE void poly_find_changes(struct poly_batch *batch, const struct p
     for (int32_t k = 0; k < BRC_LANES && k < n; k++) {
         if (!touches[k]) {
             bool fades = t->fades[k] != 0;
-            batch->has_apart[task[k].row] |= !fades;
-            batch->apart[batch->n_apart++] =
-                (struct poly_apart){task[k].row, task[k].point, poly_most(-t->delta[k], 0), fades};
+            batch->has_apart[task[k].contact] |= !fades;
+            batch->apart[batch->n_apart++] = (struct poly_apart){task[k].contact, task[k].point,
+                                                                 poly_most(-t->delta[k], 0), fades};
         } else if (points->active[task[k].point] == 0)
             points->active[task[k].point] = 1;
     }
@@ -266,13 +268,13 @@ BRC_LANES_INLINE void poly_act_on_points(struct poly_batch *batch, const struct 
 {
     const struct poly_points *points = batch->contacts->point_columns;
     const double *frame[BRC_LANES], *from[BRC_LANES];
-    int32_t row[BRC_LANES];
+    int32_t contact[BRC_LANES];
     struct poly_frame4 f;
     struct poly_springs4 springs;
     struct poly_sums4 s;
     for (int k = 0; k < BRC_LANES; k++) {
-        row[k] = task[k].row;
-        frame[k] = batch->frame[row[k]];
+        contact[k] = task[k].contact;
+        frame[k] = batch->frame[contact[k]];
         from[k] = points->spring[task[k].point];
     }
     poly_gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
@@ -283,22 +285,23 @@ BRC_LANES_INLINE void poly_act_on_points(struct poly_batch *batch, const struct 
                                            viscous, ledger);
     poly_find_changes(batch, task, n, t, old);
     const bool *wanted = batch->will_linearise;
-    if (linearised && (wanted[row[0]] | wanted[row[1]] | wanted[row[2]] | wanted[row[3]]))
-        poly_add_tangents(batch, row, t, springs.xi, slips, arm, friction);
+    if (linearised &&
+        (wanted[contact[0]] | wanted[contact[1]] | wanted[contact[2]] | wanted[contact[3]]))
+        poly_add_tangents(batch, contact, t, springs.xi, slips, arm, friction);
     brc_lanes *part = (brc_lanes *)&springs;
     brc_lanes_transpose(part);
     brc_lanes_transpose(part + BRC_LANES);
     for (int k = 0; k < BRC_LANES && k < n; k++) {
         brc_lanes_put(points->spring[task[k].point], part[k]);
         brc_lanes_put(points->spring[task[k].point] + BRC_LANES, part[BRC_LANES + k]);
-        batch->nearest[row[k]] =
-            poly_least(batch->nearest[row[k]], t->weight[k] > 0 ? -t->delta[k] : HUGE_VAL);
+        batch->nearest[contact[k]] =
+            poly_least(batch->nearest[contact[k]], t->weight[k] > 0 ? -t->delta[k] : HUGE_VAL);
     }
     s.none = brc_lanes_all(0);
-    poly_add_sums(batch, row, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
+    poly_add_sums(batch, contact, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
 }
 
-/* Ends a list at a whole group: what is left over goes to a contact that nobody reads. Returns its
+/* Ends a list at a whole four: what is left over goes to a contact that nobody reads. Returns its
  * number of tasks; the list is empty then. */
 BRC_LANES_INLINE int32_t poly_end_list(struct poly_batch *batch, int list)
 {

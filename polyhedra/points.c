@@ -14,9 +14,9 @@ static const double DOZE_STEPS = 4;
 /* Row i of the batch as the literal functions want it. */
 static const struct poly_pair *pair_of(struct poly_batch *batch, int32_t i)
 {
-    if (batch->pair_of_row != batch->row[i])
+    if (batch->pair_of_contact != batch->contact[i])
         poly_pair_of(&batch->pair, batch->sim, batch->st, batch->a[i], batch->b[i]);
-    batch->pair_of_row = batch->row[i];
+    batch->pair_of_contact = batch->contact[i];
     return &batch->pair;
 }
 
@@ -27,7 +27,8 @@ static enum poly_rule rule_of(const struct poly_batch *batch)
 
 static void add_task(struct poly_batch *batch, int list, int32_t i, size_t p)
 {
-    batch->task[list][batch->n_tasks[list]++] = (struct poly_task){.row = i, .point = (int32_t)p};
+    batch->task[list][batch->n_tasks[list]++] =
+        (struct poly_task){.contact = i, .point = (int32_t)p};
 }
 
 /* A point whose geometry is known: it touches, or how far it is apart. In the same form as the
@@ -65,7 +66,7 @@ static bool find_literally(struct poly_batch *batch, int32_t i, size_t p)
     points->i[p] = f.i;
     points->j[p] = f.j;
     if (f.kind != POLY_EDGES) {
-        points->feature_valid_to[p] = columns->skin_left[batch->row[i]] - margin;
+        points->feature_valid_to[p] = columns->skin_left[batch->contact[i]] - margin;
         if (margin > 0)
             return true;
     }
@@ -108,8 +109,8 @@ static int32_t set_near(int32_t *item, const int32_t near[POLY_NEAR], int32_t fi
     return n << POLY_NEAR_SHIFT;
 }
 
-/* What the touch of a vertex at a sure place is computed from, as item. An edge by its two ends, a
- * vertex by itself twice: one kernel does both, and for a vertex the direction along the edge is
+/* What the touch of a vertex at a sure feature is computed from, as item. An edge by its two ends,
+ * a vertex by itself twice: one kernel does both, and for a vertex the direction along the edge is
  * 0. */
 static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool merged)
 {
@@ -118,9 +119,9 @@ static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool
     bool of_b = points->kind[p] == POLY_VERTEX_B;
     int32_t own = of_b ? batch->b[i] : batch->a[i], other = of_b ? batch->a[i] : batch->b[i];
     int32_t vertex = of_b ? points->j[p] : points->i[p];
-    int32_t place = of_b ? points->i[p] : points->j[p], index = merged ? place >> 2 : place;
+    int32_t feature = of_b ? points->i[p] : points->j[p], index = merged ? feature >> 2 : feature;
     int32_t first = (int32_t)s->vertex_first[other], *item = points->item[p];
-    bool flat = !merged || (place & 3) == POLY_ON_FACE;
+    bool flat = !merged || (feature & 3) == POLY_ON_FACE;
     item[POLY_ITEM_VERTEX] = (int32_t)s->vertex_first[own] + vertex;
     item[POLY_ITEM_LIST] = (flat ? POLY_FLAT : POLY_SHARP) + (of_b ? 0 : POLY_OF_A) +
                            set_near(item + POLY_ITEM_NEAR, points->near[p], first,
@@ -130,7 +131,7 @@ static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool
         return;
     }
     const int32_t *end = s->end[s->edge_first[other] + (size_t)index];
-    bool on_edge = (place & 3) == POLY_ON_EDGE;
+    bool on_edge = (feature & 3) == POLY_ON_EDGE;
     for (int k = 0; k < 2; k++)
         item[POLY_ITEM_FEATURE + k] = first + (on_edge ? end[k] : index);
 }
@@ -143,7 +144,7 @@ static void list_items(struct poly_batch *batch, const struct poly_points *point
     int32_t flat = batch->n_tasks[POLY_FLAT], sharp = batch->n_tasks[POLY_SHARP];
     int32_t crossing = batch->n_tasks[POLY_CROSSING];
     for (size_t q = p; q < p + n; q++) {
-        struct poly_task task = {.row = i, .point = (int32_t)q};
+        struct poly_task task = {.contact = i, .point = (int32_t)q};
         int32_t list = points->item[q][POLY_ITEM_LIST] & POLY_LIST;
         batch->task[POLY_FLAT][flat] = task;
         batch->task[POLY_SHARP][sharp] = task;
@@ -218,11 +219,11 @@ static void release_spring(struct poly_batch *batch, int32_t i, size_t p)
  * platens nobody sleeps (list_at_platen). */
 static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
 {
-    int32_t i = apart->row;
+    int32_t i = apart->contact;
     size_t p = (size_t)apart->point;
     const struct poly_contacts *columns = batch->contacts->model_columns;
     struct poly_points *points = batch->contacts->point_columns;
-    size_t row = (size_t)batch->row[i];
+    size_t contact = (size_t)batch->contact[i];
     if (points->spring[p][POLY_WEIGHT] > 0)
         release_spring(batch, i, p);
     points->spring[p][POLY_WEIGHT] = 0;
@@ -235,7 +236,7 @@ static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
     }
     if (apart->path < DOZE_STEPS * batch->four[i / BRC_LANES].path[i % BRC_LANES])
         return;
-    poly_sleep_point(batch->contacts, row, p, columns->skin_left[row] - apart->path);
+    poly_sleep_point(batch->contacts, contact, p, columns->skin_left[contact] - apart->path);
 }
 
 /* The last point first. */
@@ -265,7 +266,7 @@ static double list_part(struct poly_batch *batch, int32_t i, size_t p, size_t n)
 {
     const struct poly_points *points = batch->contacts->point_columns;
     const struct poly_contacts *columns = batch->contacts->model_columns;
-    double skin_left = columns->skin_left[batch->row[i]], stable_above = 0;
+    double skin_left = columns->skin_left[batch->contact[i]], stable_above = 0;
     batch->n_points += (int32_t)n;
     if (batch->is_stable[i])
         list_items(batch, points, i, p, n);
@@ -280,7 +281,7 @@ static double list_part(struct poly_batch *batch, int32_t i, size_t p, size_t n)
 static void list_at_platen(struct poly_batch *batch, int32_t i)
 {
     const struct brc_contacts *c = batch->contacts;
-    size_t p = (size_t)c->p0[batch->row[i]], n = (size_t)c->np[batch->row[i]], end = p + n;
+    size_t p = (size_t)c->p0[batch->contact[i]], n = (size_t)c->np[batch->contact[i]], end = p + n;
     if ((size_t)batch->n_points + n > POLY_TASKS)
         poly_work_off(batch);
     for (; p < end; p++) {
@@ -299,16 +300,17 @@ void poly_list_points(struct poly_batch *batch, int32_t i)
     const struct brc_contacts *c = batch->contacts;
     const struct poly_contacts *columns = c->model_columns;
     const struct poly_points *points = c->point_columns;
-    size_t row = (size_t)batch->row[i], p = (size_t)c->p0[row], n;
+    size_t contact = (size_t)batch->contact[i], p = (size_t)c->p0[contact], n;
     if (batch->is_platens) {
         list_at_platen(batch, i);
         return;
     }
     if (!batch->is_stable[i])
-        poly_wake_points(batch->contacts, row, rule_of(batch) == POLY_MERGED);
-    n = (size_t)columns->awake[row];
-    double stable_above = !batch->is_stable[i] && n < (size_t)c->np[row] ? points->sleep[p + n] : 0;
-    columns->ready[row] = n <= POLY_TASKS;
+        poly_wake_points(batch->contacts, contact, rule_of(batch) == POLY_MERGED);
+    n = (size_t)columns->awake[contact];
+    double stable_above =
+        !batch->is_stable[i] && n < (size_t)c->np[contact] ? points->sleep[p + n] : 0;
+    columns->ready[contact] = n <= POLY_TASKS;
     if ((size_t)batch->n_points + n > POLY_TASKS)
         poly_work_off(batch);
     /* parts from the last one on: those that are still to come do not move (poly_work_off) */
@@ -320,5 +322,5 @@ void poly_list_points(struct poly_batch *batch, int32_t i)
             poly_work_off(batch);
     }
     if (!batch->is_stable[i])
-        columns->stable_above[row] = poly_most(stable_above, 0);
+        columns->stable_above[contact] = poly_most(stable_above, 0);
 }

@@ -200,15 +200,15 @@ int poly_open_bonds(struct brc_sim *sim, void *state);
 int poly_update_contacts(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
                          const struct brc_neighbours *platens);
 /* Lists the features of a contact of pairs, or of platens. */
-int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t row);
-int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t row);
+int poly_list_contact(struct brc_sim *sim, struct poly_state *st, size_t contact);
+int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t contact);
 /* The points of a contact that are awake come first, sorted by feature; then those that sleep,
  * sorted by when they wake up. Brings in those that its skin left wakes. So that the loop runs over
  * awake points without a test, and one look at the first sleeper tells whether any wakes. */
-void poly_wake_points(struct brc_contacts *c, size_t row, bool merged);
+void poly_wake_points(struct brc_contacts *c, size_t contact, bool merged);
 /* A point that is awake and does not touch sleeps until its contact has no more skin left than
  * `sleep`. */
-void poly_sleep_point(struct brc_contacts *c, size_t row, size_t p, double sleep);
+void poly_sleep_point(struct brc_contacts *c, size_t contact, size_t p, double sleep);
 
 /* points.c: lists the points of contact i of the batch that may touch; computes all that is listed.
  * May work off what is listed when the lists are full. */
@@ -240,7 +240,8 @@ struct poly_bond {
 };
 /* After poly_pose_bodies; false where it is not intact. */
 bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
-                          const struct poly_state *st, const struct brc_contacts *c, size_t row);
+                          const struct poly_state *st, const struct brc_contacts *c,
+                          size_t contact);
 /* 0 tension, 1 shear, 2 torsion: the largest term of eq 15. */
 int poly_bond_mode(const struct poly_bond *bond);
 
@@ -248,7 +249,7 @@ int poly_bond_mode(const struct poly_bond *bond);
 void poly_energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS]);
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out);
 /* Dynamic regime: the step bears that all listed features of a contact close at once. */
-int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_platen);
+int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t contact, bool is_platen);
 
 /* pose.c. Rotation matrices, core vertices and planes in space for the present poses. */
 void poly_pose_bodies(const struct brc_sim *sim, const struct poly_state *st);
@@ -257,15 +258,15 @@ void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct p
                   int32_t a, int32_t b);
 /* A feature contact that acts. */
 struct poly_active {
-    int32_t a, b;      /* bodies */
-    size_t row, point; /* of its set of contacts */
+    int32_t a, b;          /* bodies */
+    size_t contact, point; /* of its set of contacts */
     struct poly_feature feature;
     struct poly_geometry geometry;
 };
-/* Visits the feature contacts of contact `row` of c (sim->pairs or sim->platens) that touch, or
+/* Visits the feature contacts of contact `contact` of c (sim->pairs or sim->platens) that touch, or
  * would touch if the contact distance were larger by skin [m]; after poly_pose_bodies. */
 void poly_each_touch(const struct brc_sim *sim, const struct poly_state *st,
-                     const struct brc_contacts *c, size_t row, double skin,
+                     const struct brc_contacts *c, size_t contact, double skin,
                      void (*visit)(void *user, const struct poly_active *active), void *user);
 /* Visits the active feature contacts of all grain pairs, computed from the present poses. */
 void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,

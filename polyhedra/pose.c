@@ -37,24 +37,24 @@ void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct p
  * point remembers (side, closest feature) is copied: a question about the state must not change it.
  */
 void poly_each_touch(const struct brc_sim *sim, const struct poly_state *st,
-                     const struct brc_contacts *c, size_t row, double skin,
+                     const struct brc_contacts *c, size_t contact, double skin,
                      void (*visit)(void *user, const struct poly_active *active), void *user)
 {
     const struct poly_points *points = c->point_columns;
     enum poly_rule rule = (enum poly_rule)poly_params_of(sim)->features;
-    struct poly_active t = {.a = c->a[row], .b = c->b[row], .row = row};
+    struct poly_active t = {.a = c->a[contact], .b = c->b[contact], .contact = contact};
     struct poly_pair pair;
     bool is_platen = c == &sim->platens;
     if (!is_platen) {
         poly_pair_of(&pair, sim, st, t.a, t.b);
         pair.contact_distance += skin;
     }
-    for (size_t p = (size_t)c->p0[row], end = p + (size_t)c->np[row]; p < end; p++) {
+    for (size_t p = (size_t)c->p0[contact], end = p + (size_t)c->np[contact]; p < end; p++) {
         uint8_t active = points->active[p];
         double margin;
         t.point = p;
         t.feature = poly_point(points, p);
-        if (is_platen ? poly_platen_contact(&t.geometry, sim, st, row, p, skin)
+        if (is_platen ? poly_platen_contact(&t.geometry, sim, st, contact, p, skin)
                       : poly_find_contact(&t.geometry, &pair, &t.feature, &active, &margin, rule))
             visit(user, &t);
     }
@@ -64,6 +64,6 @@ void poly_each_active(const struct brc_sim *sim, const struct poly_state *st,
                       void (*visit)(void *user, const struct poly_active *active), void *user)
 {
     poly_pose_bodies(sim, st);
-    for (size_t row = 0; row < sim->pairs.n; row++)
-        poly_each_touch(sim, st, &sim->pairs, row, 0, visit, user);
+    for (size_t contact = 0; contact < sim->pairs.n; contact++)
+        poly_each_touch(sim, st, &sim->pairs, contact, 0, visit, user);
 }

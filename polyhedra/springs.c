@@ -19,11 +19,11 @@ struct springs {
     int code;
 };
 
-static void add_spring(struct springs *s, const struct brc_contacts *c, size_t row,
+static void add_spring(struct springs *s, const struct brc_contacts *c, size_t contact,
                        const double x[3], struct brc_spring *spring)
 {
-    spring->a = c->a[row];
-    spring->b = c->b[row];
+    spring->a = c->a[contact];
+    spring->b = c->b[contact];
     brc_sub(spring->ra, x, s->sim->bodies.x[spring->a]);
     brc_sub(spring->rb, x, s->sim->bodies.x[spring->b]);
     if (s->code == 0)
@@ -41,48 +41,48 @@ static void add_touch(void *user, const struct poly_active *active)
     struct brc_spring spring = {
         .kn = s->kn * t->weight, .ks = mu > 0 ? s->kt * t->weight : 0, .is_near = s->is_near};
     brc_copy(spring.n, t->n);
-    add_spring(s, is_platen ? &s->sim->platens : &s->sim->pairs, active->row, t->x, &spring);
+    add_spring(s, is_platen ? &s->sim->platens : &s->sim->pairs, active->contact, t->x, &spring);
 }
 
 /* Features of a contact that touch, or may close in the same step, as when faces meet. Their
  * springs are those that a distance without contact larger by `skin` would give. */
-static void add_points(struct springs *s, const struct brc_contacts *c, size_t row, double skin,
+static void add_points(struct springs *s, const struct brc_contacts *c, size_t contact, double skin,
                        bool is_near)
 {
     s->is_near = is_near;
-    poly_each_touch(s->sim, s->st, c, row, skin, add_touch, s);
+    poly_each_touch(s->sim, s->st, c, contact, skin, add_touch, s);
 }
 
 /* An intact bond counts with its tension stiffness, even while it is closed: it may open within a
  * step. */
-static void add_bond(struct springs *s, const struct brc_contacts *c, size_t row)
+static void add_bond(struct springs *s, const struct brc_contacts *c, size_t contact)
 {
     struct poly_bond bond;
-    poly_bond_of_contact(&bond, s->sim, s->st, c, row);
+    poly_bond_of_contact(&bond, s->sim, s->st, c, contact);
     struct brc_spring spring = {.kn = bond.kn, .ks = bond.kt, .kt = bond.ktheta};
     brc_copy(spring.n, bond.n);
-    add_spring(s, c, row, bond.x, &spring);
+    add_spring(s, c, contact, bond.x, &spring);
 }
 
 /* A pair of which nothing is near yet: one contact counts already, halfway between the centres or
  * where the grain's bounding sphere is nearest to the platen, and as stiff across n as along it,
  * because its true place is beside that line. */
-static void add_unseen(struct springs *s, const struct brc_contacts *c, size_t row)
+static void add_unseen(struct springs *s, const struct brc_contacts *c, size_t contact)
 {
     const struct brc_bodies *b = &s->sim->bodies;
-    size_t ia = (size_t)c->a[row];
+    size_t ia = (size_t)c->a[contact];
     double k = fmax(s->kn, s->kt), x[3], d[3];
     struct brc_spring spring = {.kn = k, .ks = k, .is_near = true};
     brc_copy(x, b->x[ia]);
     if (c == &s->sim->platens) {
-        brc_copy(spring.n, brc_sim_platen(s->sim, c->b[row])->n);
+        brc_copy(spring.n, brc_sim_platen(s->sim, c->b[contact])->n);
         brc_axpy(x, -b->bounding_radius[ia], spring.n);
     } else {
-        brc_sub(d, b->x[c->b[row]], b->x[ia]);
+        brc_sub(d, b->x[c->b[contact]], b->x[ia]);
         brc_scale(spring.n, d, 1 / brc_norm(d));
         brc_axpy(x, 0.5, d);
     }
-    add_spring(s, c, row, x, &spring);
+    add_spring(s, c, contact, x, &spring);
 }
 
 /* One stiffness for all pairs, as all grains have that of the case. */
@@ -99,41 +99,41 @@ static struct springs springs_of(const struct brc_sim *sim, const struct poly_st
 
 /* By what the loop has found in the last step: contacts that touch have their springs in the list
  * already. */
-static bool touches(const struct brc_contacts *c, size_t row)
+static bool touches(const struct brc_contacts *c, size_t contact)
 {
     const struct poly_points *points = c->point_columns;
-    for (int32_t k = 0; k < c->np[row]; k++)
-        if (points->active[(size_t)c->p0[row] + (size_t)k])
+    for (int32_t k = 0; k < c->np[contact]; k++)
+        if (points->active[(size_t)c->p0[contact] + (size_t)k])
             return true;
     return false;
 }
 
 /* What a contact without an intact bond may close next. False where nothing is near. */
-static bool add_near(struct springs *s, const struct brc_contacts *c, size_t row)
+static bool add_near(struct springs *s, const struct brc_contacts *c, size_t contact)
 {
     size_t n = s->out->n;
     bool is_platen = c == &s->sim->platens;
-    if (!is_platen && touches(c, row))
+    if (!is_platen && touches(c, contact))
         return true;
     double skin = is_platen ? POLY_PLATEN_SKIN : POLY_LIST_SKIN;
-    add_points(s, c, row, skin * poly_params_of(s->sim)->radius, true);
+    add_points(s, c, contact, skin * poly_params_of(s->sim)->radius, true);
     return s->out->n > n;
 }
 
 /* The faces of a bond touch, but for rounding: all that they have may close with the first load.
  */
-static void add_contact(struct springs *s, const struct brc_contacts *c, size_t row)
+static void add_contact(struct springs *s, const struct brc_contacts *c, size_t contact)
 {
-    bool is_platen = c == &s->sim->platens, is_intact = c->status[row] == BRC_INTACT;
+    bool is_platen = c == &s->sim->platens, is_intact = c->status[contact] == BRC_INTACT;
     double skin = FACE_SKIN * poly_params_of(s->sim)->radius;
     if (is_platen)
-        add_points(s, c, row, 0, false);
+        add_points(s, c, contact, 0, false);
     if (is_intact)
-        add_bond(s, c, row);
+        add_bond(s, c, contact);
     if (is_intact && !is_platen)
-        add_points(s, c, row, skin, false);
-    if (!is_intact && !add_near(s, c, row))
-        add_unseen(s, c, row);
+        add_points(s, c, contact, skin, false);
+    if (!is_intact && !add_near(s, c, contact))
+        add_unseen(s, c, contact);
 }
 
 int poly_springs(const struct brc_sim *sim, const void *state, struct brc_springs *out)
@@ -142,25 +142,25 @@ int poly_springs(const struct brc_sim *sim, const void *state, struct brc_spring
     struct springs s = springs_of(sim, st, out);
     poly_pose_bodies(sim, st);
     /* Those that touch come first, but for bonded pairs, which add_contact takes with a skin. */
-    for (size_t row = 0; row < sim->pairs.n; row++)
-        if (sim->pairs.status[row] != BRC_INTACT)
-            add_points(&s, &sim->pairs, row, 0, false);
-    for (size_t row = 0; row < sim->pairs.n; row++)
-        add_contact(&s, &sim->pairs, row);
-    for (size_t row = 0; row < sim->platens.n; row++)
-        add_contact(&s, &sim->platens, row);
+    for (size_t contact = 0; contact < sim->pairs.n; contact++)
+        if (sim->pairs.status[contact] != BRC_INTACT)
+            add_points(&s, &sim->pairs, contact, 0, false);
+    for (size_t contact = 0; contact < sim->pairs.n; contact++)
+        add_contact(&s, &sim->pairs, contact);
+    for (size_t contact = 0; contact < sim->platens.n; contact++)
+        add_contact(&s, &sim->platens, contact);
     return s.code;
 }
 
 /* Quasi-static masses are scaled by the stiffness that acts, so that there is nothing to foresee
  * (mass_scaling.c). */
-int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t row, bool is_platen)
+int poly_foresee(struct brc_sim *sim, struct poly_state *st, size_t contact, bool is_platen)
 {
     if (sim->run.regime != BRC_DYNAMIC)
         return 0;
     struct springs s = springs_of(sim, st, &st->ahead);
     st->ahead.n = 0;
-    add_near(&s, is_platen ? &sim->platens : &sim->pairs, row);
+    add_near(&s, is_platen ? &sim->platens : &sim->pairs, contact);
     BRC_TRY(s.code);
     return brc_stability_foresee(sim, &st->ahead);
 }

@@ -185,7 +185,7 @@ VGCM_INLINE brc_lanes vgcm_force_work(const brc_lanes f[VGCM_N_MOTION],
            f[VGCM_TWIST] * u[VGCM_TWIST];
 }
 
-/* Twice the energy of affine points with the field u.  */
+/* Twice the energy of affine points with the field u. */
 VGCM_INLINE brc_lanes vgcm_energy_affine(brc_lanes kn, brc_lanes ks,
                                          const brc_lanes m[VGCM_N_MOMENTS],
                                          const brc_lanes u[VGCM_N_MOTION])

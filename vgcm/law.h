@@ -108,8 +108,8 @@ struct vgcm_energy_lanes {
 };
 
 /* beta: strength left at the kink (fraction of the peak); w1: its place past the peak in units of
- * (post-peak energy)/strength. The end follows from the area under the curve. By the areas under
- * both branches, which have to sum to the post-peak energy. */
+ * (post-peak energy)/strength. The end follows from the areas under both branches, which have to
+ * sum to the post-peak energy. */
 static inline void vgcm_law_softening(struct vgcm_law *law, double beta, double w1)
 {
     law->wc = (2 - w1) / beta;
@@ -143,9 +143,8 @@ VGCM_INLINE brc_lanes vgcm_lanes_left(const struct vgcm_law *law, int flags, brc
     return brc_lanes_max(left, brc_lanes_all(0));
 }
 
-/* Where points are not broken. Where losses of strength add, both parts of the damage may be below
- * 1, and their sum above it, while some strength is left: so the strength is asked, not the
- * damage. */
+/* Where points are not broken. Where losses of strength add, nothing may be left though the parts
+ * of the damage sum to less than 1: so the strength is asked, not the damage. */
 VGCM_INLINE brc_mask vgcm_lanes_whole(const struct vgcm_law *law, int flags, brc_lanes dn,
                                       brc_lanes ds)
 {

@@ -52,17 +52,12 @@ static double centre_distance(const struct brc_facets *facets, size_t facet)
     return brc_norm(branch);
 }
 
-static bool is_inner(const struct brc_facets *facets, size_t facet)
-{
-    return facets->cell[facet][1] >= 0;
-}
-
 /* The paper does not say which facets are contacts; README.md tells how these rules compare. A
  * facet that rounding has left has no area to be stiff with, and would only cost time. */
 static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets, size_t facet)
 {
-    if (!is_inner(facets, facet) || !facets->is_contact[facet] ||
+    if (facets->cell[facet][1] < 0 || !facets->is_contact[facet] ||
         facets->area[facet] <= LEAST_AREA * census->mean_area)
         return false;
     if (params->interaction == VGCM_INTERACTION_ALL)
@@ -85,7 +80,7 @@ void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *p
     for (size_t i = 0; i < facets->n_cells; i++)
         diameters += 2 * size_of(facets, i);
     for (size_t i = 0; i < facets->n_facets; i++) {
-        if (!is_inner(facets, i))
+        if (facets->cell[i][1] < 0)
             continue;
         census->n_inner++;
         area += facets->area[i];
@@ -357,19 +352,21 @@ int vgcm_bond(struct brc_sim *sim, void *state)
     return brc_contacts_compact(sim->ctx, &sim->platens);
 }
 
-/* Distance at which the spheres of a pair, or a sphere and a platen, begin to touch. A platen has
- * no radius; its height says how far the centre is. */
-static double touching_distance(const struct brc_sim *sim, const int32_t pair[2], double *now)
+/* Distance at which the spheres of a pair, or a sphere and a platen, begin to touch, and the one
+ * that they have now. A platen has no radius; its height says how far the centre is. False: beyond
+ * a sharp edge of the platen. */
+static bool touching_distance(const struct brc_sim *sim, const int32_t pair[2], double *touch,
+                              double *now)
 {
     const struct vgcm_bodies *columns = sim->bodies.model_columns;
-    double touch = columns->radius[pair[0]], branch[3];
-    if ((size_t)pair[1] >= sim->bodies.n_grains) {
-        centre_height(sim, pair[0], brc_sim_platen(sim, pair[1]), now);
-        return touch;
-    }
+    double branch[3];
+    *touch = columns->radius[pair[0]];
+    if ((size_t)pair[1] >= sim->bodies.n_grains)
+        return centre_height(sim, pair[0], brc_sim_platen(sim, pair[1]), now);
     brc_sub(branch, sim->bodies.x[pair[1]], sim->bodies.x[pair[0]]);
     *now = brc_norm(branch);
-    return touch + columns->radius[pair[1]];
+    *touch += columns->radius[pair[1]];
+    return true;
 }
 
 /* A facet at a platen stays for good: it may come back, and its points' gaps at the start are part
@@ -383,14 +380,12 @@ static bool must_stay(const struct brc_contacts *c, size_t contact, bool is_plat
 }
 
 /* With the skin of the neighbour search, so that a pair is watched before it touches, and the list
- * need not be made anew in each step. */
+ * need not be made anew in each step. Beyond a sharp edge a sphere may meet the side of a
+ * strip, which is not part of its surface. */
 static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
 {
-    double now, touch = touching_distance(sim, pair, &now), height;
-    bool is_platen = (size_t)pair[1] >= sim->bodies.n_grains;
-    if (is_platen && !centre_height(sim, pair[0], brc_sim_platen(sim, pair[1]), &height))
-        return false; /* it may meet the side of a strip, which is no part of the surface */
-    return now < touch + sim->skin;
+    double touch, now;
+    return touching_distance(sim, pair, &touch, &now) && now < touch + sim->skin;
 }
 
 /* Both lists are sorted by (a, b), so that one pass does it, and the order of contacts follows from
@@ -437,7 +432,8 @@ static int sphere_contact(struct brc_sim *sim, const struct vgcm_law *law, struc
     struct vgcm_contacts *f = vgcm_columns(c);
     struct vgcm_points *p = vgcm_point_columns(c);
     const int32_t pair[2] = {c->a[i], c->b[i]};
-    double now, touch = touching_distance(sim, pair, &now);
+    double now, touch;
+    touching_distance(sim, pair, &touch, &now);
     double ra = columns->radius[pair[0]], rb = is_platen ? ra : columns->radius[pair[1]];
     f->phase[i] = VGCM_SPHERE;
     f->kn[i] = law->e_bar / touch; /* eq:vgcm:28 */
