@@ -147,7 +147,9 @@ void poly_wake_points(struct brc_contacts *c, size_t contact, bool merged)
     columns->awake[contact] = (int32_t)(next - first);
 }
 
-/* Those that sleep stand sorted, so that to see whether one wakes up is to look at the first. */
+/* Those that sleep stand sorted, so that to see whether one wakes up is to look at the first. If
+ * all stay awake, bench_polyhedra takes 7.2 ms instead of 1.9 (bonded, literal), unbonded 4.9
+ * instead of 3.6, and nothing that has points apart is linearised. */
 void poly_sleep_point(struct brc_contacts *c, size_t contact, size_t p, double sleep)
 {
     const struct poly_points *points = c->point_columns;

@@ -94,7 +94,8 @@ BRC_LANES_INLINE void fetch(const void *at, size_t size)
 }
 
 /* What the step reads of the contacts of the next batch, while this one is worked on: the step
- * waits for memory more than for anything else. */
+ * waits for memory more than for anything else. Without it bench_scaling takes 350 instead of 285
+ * ns a contact with 1e3 grains, and 647 instead of 385 with 1e4 (least of two runs by turns). */
 BRC_LANES_INLINE void fetch_contacts(const struct poly_batch *batch, bool linearised)
 {
     const struct brc_contacts *c = batch->contacts;

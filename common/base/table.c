@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One block holds all columns of a table. They start at different places of a page's cache sets,
- * since columns that are read together would otherwise evict each other, and large blocks ask for
- * large pages. Rows are a multiple of four, so that vector loops need no remainder.
+/* One block holds all columns of a table, and large blocks ask for large pages. Rejected: columns
+ * that begin at different places modulo 4096, so as not to compete for lines of the cache. That
+ * gave vgcm 3 to 5 % and cost polyhedra 3 to 8 % (bench_vgcm, bench_polyhedra). Rows are a multiple
+ * of four, so that vector loops need no remainder.
  *
  * One array for each field rather than one struct for each row: a loop reads few of the fields, and
  * those of four rows at once. Knows nothing of what fields mean; which are state, scratch or left
@@ -17,9 +18,7 @@
 
 enum {
     ALIGNMENT = 64,
-    ROWS = 4,      /* capacity is a multiple of it */
-    WAY = 4096,    /* addresses that differ by a multiple of it share their place in a cache */
-    SKEW = 5 * 64, /* so columns begin this much apart modulo WAY */
+    ROWS = 4,            /* capacity is a multiple of it */
     LARGE_PAGE = 1 << 21 /* blocks of at least this size ask for pages of it */
 };
 
@@ -79,8 +78,7 @@ static size_t round_up(size_t n, size_t unit)
     return (n + unit - 1) / unit * unit;
 }
 
-/* One block for all columns of cap rows, and where in it each begins. Small tables are packed
- * instead: their columns cannot evict each other, and a skew would be most of the block. Half of
+/* One block for all columns of cap rows, and where in it each begins. Half of
  * the address space is refused as a size, so that sums of offsets cannot overflow. */
 static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t cap,
                       size_t *offset)
@@ -91,8 +89,7 @@ static void *allocate(struct brc_context *ctx, const struct brc_table *t, size_t
         row_size += brc_field_size(&t->set.fields[i]);
     if (row_size == 0 || cap <= PTRDIFF_MAX / 2 / row_size) {
         for (int i = 0; i < t->set.n; i++) {
-            size_t skew = cap * row_size < WAY ? 0 : (size_t)i * SKEW % WAY;
-            offset[i] = round_up(bytes, skew > 0 ? WAY : ALIGNMENT) + skew;
+            offset[i] = round_up(bytes, ALIGNMENT);
             bytes = offset[i] + cap * brc_field_size(&t->set.fields[i]);
         }
         size_t unit = bytes < LARGE_PAGE ? ALIGNMENT : LARGE_PAGE;

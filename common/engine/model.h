@@ -62,9 +62,6 @@ struct brc_model {
     void (*free)(void *state);
     /* Parameters or options changed: choose the specialised loop. */
     void (*select)(struct brc_sim *sim, void *state);
-    /* The step had crack events with numbers from first on: candidates for those pairs and the
-     * like. */
-    int (*after_break)(struct brc_sim *sim, void *state, size_t first);
     /* A loaded state has replaced all fields: derive private memory again. */
     int (*restore)(struct brc_sim *sim, void *state);
     /* Fields that hold nothing in this model, in the tables of bodies, pairs and platens and those

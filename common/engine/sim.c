@@ -454,7 +454,6 @@ void brc_sim_free(struct brc_sim *sim)
 
 int brc_sim_step(struct brc_sim *sim)
 {
-    size_t events = sim->events.table.n;
     int64_t rebuilds = sim->n_rebuilds;
     double dt_before = sim->dt;
     BRC_ASSERT(sim->dt > 0 && sim->ctx->code == 0);
@@ -464,17 +463,14 @@ int brc_sim_step(struct brc_sim *sim)
     BRC_TRY(check_path(sim));
     brc_sim_forces(sim);
     BRC_TRY(sim->ctx->code);
-    /* rows are opened and closed by `pairs` and `after_break` alone, events only added */
+    /* rows are opened and closed by `pairs` alone */
     BRC_ASSERT(sim->pairs.n == sim->pairs.table.n && sim->platens.n == sim->platens.table.n);
-    BRC_ASSERT(sim->events.table.n >= events);
     brc_platens_measure(sim);
     BRC_TRY(sim->rig.type->drive(sim));
     BRC_TRY(follow_stiffness(sim, sim->n_rebuilds > rebuilds));
     brc_integrate_kick(sim, 0.5 * (dt_before + sim->dt));
     if (!isfinite(sim->ledger.kinetic))
         return brc_blowup_number(sim);
-    if (BRC_OPTION(sim->events.table.n > events) && sim->model.after_break)
-        BRC_TRY(sim->model.after_break(sim, sim->state, events));
     if (sim->step % TIDY_STEPS == 0) {
         BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->pairs));
         BRC_TRY(brc_contacts_tidy(sim->ctx, &sim->platens));
