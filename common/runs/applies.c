@@ -83,6 +83,7 @@ static int holds(struct brc_context *ctx, const struct brc_case *run_case, const
     return 0;
 }
 
+/* Clause by clause: the first that fails is the one that a message names. */
 int brc_applies(struct brc_context *ctx, const struct brc_case *run_case, const char *section,
                 const struct brc_param *p, const char **clause)
 {
@@ -205,6 +206,7 @@ static int check_key(struct brc_context *ctx, const struct brc_case *run_case,
     return brc_params_set(ctx, s->list, s->values, s->name, p->key, p->default_text, "default");
 }
 
+/* Of keys without a declaration nothing is asked: they always apply. */
 int brc_applies_check(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_case_section *section)
 {

@@ -79,6 +79,7 @@ static int keep_file(struct brc_context *ctx, struct brc_casefile *c, const stru
     return brc_casefile_write(ctx, c, "specimen", p->key, brc_specimen_param_list, path);
 }
 
+/* After the overrides, as those may name files, too. */
 static int keep_files(struct brc_context *ctx, const struct brc_case *run_case, const char *dir,
                       struct brc_casefile *c)
 {
@@ -123,6 +124,8 @@ static int drop_meaningless(struct brc_context *ctx, const struct brc_case *run_
     return 0;
 }
 
+/* From the user's text: overrides become values, then what they have made meaningless goes, then
+ * names of files are turned to the folder. The model last: it may come from an option alone. */
 static int write_kept(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_model *model, const char *dir, struct brc_casefile *c)
 {

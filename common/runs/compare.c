@@ -160,6 +160,8 @@ static int write_table(struct compare *c)
     return brc_text_file_end(c->ctx, &file);
 }
 
+/* From the files of the runs, by names relative to the folder: nothing is computed anew, and the
+ * folder can be moved with its pictures. */
 static int draw(struct compare *c)
 {
     const struct brc_case *run_case = c->options->run_case;

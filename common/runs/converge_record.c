@@ -121,6 +121,7 @@ static int read_old(struct brc_context *ctx, struct brc_converge_record *r, cons
     return code;
 }
 
+/* Flushed at once: a line that is only in memory would be lost with the program. */
 static int write_text(struct brc_context *ctx, struct brc_converge_record *r, const char *text)
 {
     if (fseek(r->file, 0, SEEK_END) != 0 || fputs(text, r->file) < 0 || fflush(r->file) != 0)

@@ -90,6 +90,7 @@ static void log_line(struct run *r, const char *format, ...)
 
 /* ---- state --------------------------------------------------------------------------------- */
 
+/* Of the whole process: the cost of a run includes what its threads do. */
 static double cpu_now(void)
 {
     struct timespec t;
@@ -184,6 +185,7 @@ struct totals {
     double stiffness; /* N/m */
 };
 
+/* A pass over all rows, since models open and close springs by themselves and keep no count. */
 static struct totals total(const struct brc_sim *sim)
 {
     const struct brc_contacts *const sets[] = {&sim->pairs, &sim->platens};
@@ -340,6 +342,7 @@ static int measure(struct run *r, struct brc_summary *s)
     return code;
 }
 
+/* Apart from the summary: they are written of a run that has failed, too. */
 static int write_tables(struct run *r)
 {
     const char *dir = r->options->dir;
@@ -403,6 +406,7 @@ static void log_header(struct run *r)
     log_line(r, "case.yaml: digest %016" PRIx64, brc_run_case_digest(r->case_text));
 }
 
+/* Twice: before the work of building the simulation, and again under the lock of the log. */
 static int check_folder(const struct run *r)
 {
     const struct brc_run_options *o = r->options;

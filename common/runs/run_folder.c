@@ -93,6 +93,7 @@ static int check_input(struct brc_context *ctx, const char *dir, const struct br
     return 0;
 }
 
+/* Inputs first, since they are refused whatever is allowed. */
 int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                       const char *const *names, int n, bool may_replace)
 {
@@ -222,6 +223,7 @@ int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FIL
     return 0;
 }
 
+/* The case and the log stay: the one has taken its place already, and the other is locked. */
 int brc_run_remove_results(struct brc_context *ctx, const char *dir)
 {
     for (int i = 0; i < N_RESULT_FILES; i++)
