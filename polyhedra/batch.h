@@ -160,11 +160,11 @@ struct poly_batch {
     double
         valid_path[POLY_CONTACTS + 1]; /* for which its springs act, while its tangent is found */
     _Alignas(64) double frame[POLY_CONTACTS + 1][POLY_FRAME];
-    double sum[POLY_CONTACTS + 1][POLY_SUMS];
-    double tangent[POLY_CONTACTS + 1][36]; /* column after column */
     /* J, what contacts book in this step: summed up here first, so that what a grain's account gets
      * does not hang on which contacts make up a batch */
-    _Alignas(64) double energy[POLY_CONTACTS][BRC_N_ACCOUNTS];
+    double energy[POLY_CONTACTS][BRC_N_ACCOUNTS];
+    double sum[POLY_CONTACTS + 1][POLY_SUMS];
+    double tangent[POLY_CONTACTS + 1][36]; /* column after column */
     struct poly_contact4 four[POLY_CONTACTS / BRC_LANES];
     struct poly_geometry4 known[POLY_TASKS / BRC_LANES];
     struct poly_task task[POLY_N_LISTS][POLY_TASKS + BRC_LANES];
