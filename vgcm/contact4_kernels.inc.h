@@ -75,8 +75,8 @@ VGCM_INLINE void vgcm_fetch(const void *at, size_t size)
  * of the queues. What tells where points are is wanted a chunk earlier. Without it a step takes
  * 27 % longer a point at half of the points damaged, 15 % over the whole of bench_vgcm (minima of
  * six runs, 20.0 against 15.8 ns and 14.5 against 12.7 ns). To keep the points
- * of damaged contacts together in memory and to build the loops for AVX-512 too gave less than 5 %,
- * and are gone. */
+ * of damaged contacts together in memory gave less than 5 %,
+ * and is gone. */
 VGCM_INLINE void vgcm_fetch_ahead(struct vgcm_loop *l)
 {
     const struct brc_contacts *c = l->c;

@@ -201,14 +201,16 @@ static int shape(struct brc_sim *sim, void *state)
 /* Flags are constants of the loops: what is off costs nothing in a step. */
 static void select_loops(struct brc_sim *sim, void *state)
 {
+    static const struct vgcm_loops *const loops[BRC_N_SIMD] = {&vgcm_loops_base, &vgcm_loops_avx2,
+                                                               &vgcm_loops_avx512};
     struct vgcm_state *own = state;
     vgcm_law_of(&own->law, sim->params);
     own->flags =
         vgcm_law_flags(&own->law) | (BRC_OPTION(sim->run.ledger) ? VGCM_LEDGER : 0) |
         (BRC_OPTION(own->law.viscous > 0 && sim->run.regime == BRC_DYNAMIC) ? VGCM_VISCOUS : 0);
-    /* AVX-512 has no loops of its own: they were 0.94 to 1.47 times as slow as those for AVX2 on
-     * two machines of docs/speed.md and a third */
-    own->loops = brc_simd_of(sim->run.simd) == BRC_SIMD_BASE ? &vgcm_loops_base : &vgcm_loops_avx2;
+    /* AVX-512 gives 8 % an elastic point on a machine of AMD's family 26 (3.62 against 3.93 ns,
+     * least of three runs by turns), 5 % on one of Intel's and a loss on another (docs/speed.md) */
+    own->loops = loops[brc_simd_of(sim->run.simd)];
 }
 
 /* Two of the operations choose their loop; all others of the table are called as they are. */

@@ -194,7 +194,7 @@ struct vgcm_loops {
     void (*forces[VGCM_N_LOOPS])(struct brc_sim *sim, const struct vgcm_law *law);
     void (*platens)(struct brc_sim *sim, const struct vgcm_law *law, int flags);
 };
-extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2;
+extern const struct vgcm_loops vgcm_loops_base, vgcm_loops_avx2, vgcm_loops_avx512;
 
 /* energy.c: operations of the model. */
 void vgcm_energy(const struct brc_sim *sim, const void *state, double (*of_grain)[BRC_N_ACCOUNTS]);
