@@ -22,7 +22,7 @@ static void store_stiffness(struct brc_contacts *c, size_t contact, const double
     c->k_version++;
 }
 
-/* True when the travel of a contact's bodies calls for a new list. For contacts without listed
+/* True when the path of a contact's bodies calls for a new list. For contacts without listed
  * features, which have no relative path: the sum of the paths of both bodies is a bound of it. */
 static bool is_awake(const struct brc_sim *sim, const struct brc_contacts *c, size_t contact)
 {
@@ -146,7 +146,8 @@ static void take_contacts(struct poly_batch *batch)
         batch->listed[i] = c->np[contact] > 0;
     }
     batch->n_contacts = n;
-    memset(batch->energy, 0, (size_t)n * sizeof *batch->energy);
+    if (BRC_OPTION(batch->sim->run.ledger))
+        memset(batch->energy, 0, (size_t)n * sizeof *batch->energy);
     for (; n % BRC_LANES != 0; n++) {
         batch->contact[n] = batch->contact[n - 1];
         batch->a[n] = batch->a[n - 1];

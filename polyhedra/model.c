@@ -104,7 +104,7 @@ static void release(void *state)
 
 /* Chosen once for a run: all instruction sets give the same bits, so that `run.simd` is for tests
  * and for measuring. AVX-512 is kept for its 32 registers, in lanes of four as elsewhere: 3 to 8 %
- * in the figures of bench_polyhedra on one machine, 0 to 30 % on another (docs/speed.md). */
+ * in the figures of bench_polyhedra on one machine, -2 to 29 % on another (docs/speed.md). */
 static void select_kernels(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;

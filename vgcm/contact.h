@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* For the loops and energy.c: no law, no phases, no queues here.
- * Kinematics and statics of one contact: its frame, the affine motion of its points, and the
- * forces and moments that a set of point forces makes on the two spheres.
+/* Kinematics and statics of one contact: its frame, the affine motion of its points, and the
+ * forces and moments that a set of point forces makes on the two spheres. For the loops and
+ * energy.c: no law, no phases, no queues here.
  *
  * Increments are taken with the normal and the axes halfway through the step, so that a rigid
  * rotation opens nothing and the error of a finite rotation in N steps falls as 1/N^2; with the
@@ -135,9 +135,10 @@ VGCM_INLINE void vgcm_motion_of(const struct brc_bodies *bodies, const struct br
     m->du[VGCM_BEND_T] = brc_lanes_dot(wb, tm);
 }
 
-/* Why six numbers are enough: a rigid plane over another moves by an opening, two slips and three
- * small turns, and every point's displacement is affine in its place in the plane. The sum over
- * steps of affine fields is one. Opening and slips of the affine field u at the places (s, t). */
+/* Opening and slips of the affine field u at the places (s, t). Six numbers are enough: a
+ * rigid plane over another moves by an opening, two slips and three small turns, and every
+ * point's displacement is affine in its place in the plane. The sum over steps of affine fields
+ * is one. */
 VGCM_INLINE void vgcm_motion_at(brc_lanes at[3], const brc_lanes u[VGCM_N_MOTION], brc_lanes s,
                                 brc_lanes t)
 {
@@ -159,9 +160,9 @@ VGCM_INLINE void vgcm_force_add(brc_lanes sum[VGCM_N_MOTION], brc_lanes fn, brc_
     sum[VGCM_BEND_T] -= s * fn;
 }
 
-/* The sums over points that vgcm_force_add makes one by one, with the sums over places taken out:
- * 30 operations a contact instead of 12 a point. Generalised force of elastic points that follow
- * the affine field u. */
+/* Generalised force of elastic points that follow the affine field u. The sums over points that
+ * vgcm_force_add makes one by one, with the sums over places taken out: about 30 operations a
+ * contact instead of 12 a point. */
 VGCM_INLINE void vgcm_force_affine(brc_lanes sum[VGCM_N_MOTION], brc_lanes kn, brc_lanes ks,
                                    const brc_lanes m[VGCM_N_MOMENTS],
                                    const brc_lanes u[VGCM_N_MOTION])

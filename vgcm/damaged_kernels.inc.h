@@ -98,8 +98,8 @@ VGCM_INLINE void vgcm_points4_begin(const struct vgcm_loop *l, int flags,
     w->force2 = w->s * w->s + w->t * w->t;
 }
 
-/* Most points of a damaged contact do not change in a step: a line that is not written need not go
- * back to memory. Writes what has changed of the points' states. */
+/* Writes what has changed of the points' states. Most points of a damaged contact do not change
+ * in a step: a line that is not written need not go back to memory. */
 VGCM_INLINE void vgcm_points4_write(double *const point[BRC_LANES],
                                     const struct vgcm_point_lanes *w, brc_lanes fs, brc_lanes ft,
                                     brc_mask grows, brc_lanes dissipated)
@@ -161,8 +161,8 @@ VGCM_INLINE void vgcm_points4_sum(struct vgcm_loop *l, int flags, struct vgcm_co
         vgcm_contact4_viscous(l, x, q->viscous);
 }
 
-/* By the same bound that wakes them again, so that no contact goes to and fro without having
- * closed. Contacts that are broken and surely open all over are loose from now on. */
+/* Contacts that are broken and surely open all over are loose from now on. By the same bound
+ * that wakes them again, so that no contact goes to and fro without having closed. */
 VGCM_INLINE void vgcm_contact4_loosen(const struct vgcm_loop *l, const struct vgcm_contact4 *x)
 {
     brc_lanes range[2];

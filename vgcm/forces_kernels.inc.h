@@ -44,9 +44,9 @@ static bool vgcm_points_stay_elastic(const struct vgcm_loop *l, size_t i,
     return true;
 }
 
-/* The bound takes the largest opening and the largest slip, wherever they are: it costs about what
- * two points do, and a facet has seven. Where some point of a contact leaves the elastic range.
- * Bounds over the facets first; a contact that fails them is looked at point by point. */
+/* Where some point of a contact leaves the elastic range. Bounds over the facets first; a
+ * contact that fails them is looked at point by point. The bound takes the largest opening and
+ * the largest slip, wherever they are: it costs about what two points do, and a facet has seven. */
 VGCM_INLINE brc_mask vgcm_affine_fails(const struct vgcm_loop *l, const struct vgcm_contact4 *x)
 {
     const struct vgcm_law *law = l->law;
@@ -105,9 +105,9 @@ VGCM_INLINE void vgcm_affine_forces(struct vgcm_loop *l, int flags, struct vgcm_
     }
 }
 
-/* All or none: a contact that fails has to be done by its points, from the state before the step.
- * Four affine contacts from end to end, if all of them stay so; else nothing is done. Returns those
- * that leave the elastic range. */
+/* Four affine contacts from end to end, if all of them stay so; else nothing is done. Returns
+ * those that leave the elastic range. All or none: a contact that fails has to be done by its
+ * points, from the state before the step. */
 VGCM_INLINE brc_mask vgcm_contact4_affine(struct vgcm_loop *l, int flags, struct vgcm_contact4 *x)
 {
     vgcm_contact4_move(l, x);
@@ -196,8 +196,8 @@ static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
     }
 }
 
-/* One at a time: they are few, and most of them do not touch.
- * Two spheres without a bond: one point that is broken from the start, with the total overlap. */
+/* Two spheres without a bond: one point that is broken from the start, with the total overlap.
+ * One at a time: they are few, and most of them do not touch. */
 static __attribute__((noinline)) void vgcm_sphere_step(struct vgcm_loop *l, int32_t i, int flags)
 {
     struct brc_contacts *c = l->c;

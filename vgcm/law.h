@@ -64,9 +64,9 @@ struct vgcm_energy {
     double bond, normal, shear, damage, friction;
 };
 
-/* Divisions take as long as a dozen multiplications, and a contact has 7 points: so they are made
- * once a contact, and forces are counted per area and stiffness until they are summed up. What the
- * law wants to know of a bond, without a division left for its points. */
+/* What the law wants to know of a bond, without a division left for its points. Divisions take
+ * as long as a dozen multiplications, and a contact has 7 points: so they are made once a
+ * contact, and forces are counted per area and stiffness until they are summed up. */
 enum vgcm_bond_parts {
     VGCM_U0,      /* m, opening at the tensile strength */
     VGCM_PER_WN,  /* 1/m, damage per opening past it */
@@ -118,9 +118,9 @@ static inline void vgcm_law_softening(struct vgcm_law *law, double beta, double 
     law->slope[1] = beta / (1 - law->kink);
 }
 
-/* The greater of two lines, or the lesser where the curve bulges out (slope[1] > slope[0]): no
- * branch on which of them holds. Strength at a damage over the peak strength: 1 at 0, beta at the
- * kink, 0 from 1 on. */
+/* Strength at a damage over the peak strength: 1 at 0, beta at the kink, 0 from 1 on. The
+ * greater of two lines, or the lesser where the curve bulges out (slope[1] > slope[0]): no
+ * branch on which of them holds. */
 VGCM_INLINE brc_lanes vgcm_lanes_strength(const struct vgcm_law *law, int flags, brc_lanes damage)
 {
     brc_lanes none = brc_lanes_all(0), one = brc_lanes_all(1);

@@ -140,10 +140,10 @@ static int add_points(struct brc_sim *sim, struct brc_contacts *c, size_t i, siz
     return code;
 }
 
-/* Six moments carry the whole contact while it is elastic: its force, energy and stiffness are sums
- * over points of products of their places. Area moments and radius of a contact from its points.
- * The radius bounds where a point may be, for the tests of strength and opening that look at no
- * point (forces_kernels.inc.h). */
+/* Area moments and radius of a contact from its points. The radius bounds where a point may be,
+ * for the tests of strength and opening that look at no point (forces_kernels.inc.h). Six
+ * moments carry the whole contact while it is elastic: its force, energy and stiffness are sums
+ * over points of products of their places. */
 static void set_moments(struct brc_contacts *c, size_t i)
 {
     struct vgcm_contacts *f = vgcm_columns(c);
@@ -388,9 +388,9 @@ static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
     return touching_distance(sim, pair, &touch, &now) && now < touch + sim->skin;
 }
 
-/* Both lists are sorted by (a, b), so that one pass does it, and the order of contacts follows from
- * the numbers of their bodies alone, never from when they were found. Sorted union of the contacts
- * that stay and the candidates that may touch. */
+/* Sorted union of the contacts that stay and the candidates that may touch. Both lists are
+ * sorted by (a, b), so that one pass does it, and the order of contacts follows from the numbers
+ * of their bodies alone, never from when they were found. */
 static size_t merge_contacts(const struct brc_sim *sim, const struct brc_contacts *c,
                              const struct brc_neighbours *list, int32_t (*pair)[2])
 {

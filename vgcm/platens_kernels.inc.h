@@ -240,8 +240,8 @@ VGCM_INLINE void vgcm_platen_points_step(struct vgcm_platen_loop *w, size_t i, s
     w->gap = brc_lanes_min(brc_lanes_pick(x.live, q->un, w->gap), w->gap);
 }
 
-/* Over all points at once: the increments of a rigid grain are those of six numbers, and so is the
- * work. Dissipation of the viscous forces, by the mean of those before and after the step. */
+/* Dissipation of the viscous forces, by the mean of those before and after the step. Over all
+ * points at once: the increments of a rigid grain are those of six numbers, and so is the work. */
 static void vgcm_platen_account(struct vgcm_platen_loop *w, size_t i, double force[6])
 {
     double *old = w->f->viscous_force[i], viscous[6];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What make_contacts.c asks for. Interaction points of a facet: where its forces act, and the area
- * that each stands for. */
+/* Interaction points of a facet: where its forces act, and the area that each stands for. For
+ * make_contacts.c. */
 #ifndef VGCM_POINTS_H
 #define VGCM_POINTS_H
 

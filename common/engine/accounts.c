@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The ledger's terms from what the grains have on their accounts. Called by whoever reads, saves or
+ * hashes the ledger, never in each step. */
 #include "common/engine/accounts.h"
 
 #include "common/engine/sim.h"

@@ -2,9 +2,9 @@
 /* Accounts of the grains: what their contacts store and dissipate. A model books the energies of a
  * contact on its grain a, in the order of (a, b), and the ledger is their sum over the grains, made
  * only when somebody reads it: so neither the order of the contacts nor how the grains are shared
- * out is felt in it, and a step pays for one addition a contact. Rejected: a sum over the contacts
- * in each step, which rounds as they are listed, or costs six sums over all grains a step to
- * round as they are not. */
+ * out is felt in it, and a step pays for one addition a contact. Rejected: to
+ * add to the ledger in each step, which either rounds by the order of the list, or costs an exact
+ * sum over all grains for each of six terms. */
 #ifndef BRC_ACCOUNTS_H
 #define BRC_ACCOUNTS_H
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Says that a simulation has become unstable as long as it can be said where: once a velocity is no
  * number, all of them are a few steps later. sim.c calls it when its own checks of a step fail, and
- * runs for the energy; it reads state and never changes it. */
+ * runs for the energy; it changes nothing but to bring
+ * the ledger up to date. */
 #include "common/engine/blowup.h"
 
 #include "common/geometry/vec.h"

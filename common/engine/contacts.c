@@ -133,11 +133,12 @@ int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t 
     BRC_ASSERT(i < c->n && np >= 0 && c->np[i] <= c->pcap[i]);
     if (np > c->pcap[i]) {
         size_t old = start;
+        int32_t reserved = padded(np, c->lanes);
         start = c->points.n;
-        c->pcap[i] = padded(np, c->lanes);
-        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)c->pcap[i]));
+        BRC_TRY(brc_table_resize(ctx, &c->points, start + (size_t)reserved));
         brc_table_copy(&c->points, start, old, kept);
         c->p0[i] = (int32_t)start;
+        c->pcap[i] = reserved;
     } else if ((size_t)np > kept) {
         brc_table_clear(&c->points, start + kept, (size_t)np - kept);
     }

@@ -28,7 +28,7 @@ struct brc_model {
     /* --- required --- */
 
     /* Geometry, mass and inertia of the grains: fills sim->bodies x, q, true_mass, true_inertia,
-     * volume, reach and the model's body fields for the grains. Called once. */
+     * volume, bounding_radius and the model's body fields for the grains. Called once. */
     int (*shape)(struct brc_sim *sim, void *state);
     /* Opens the initial contacts and points of sim->pairs from the facets, and of sim->platens from
      * the boundary facets. Called once, after shape. */

@@ -9,8 +9,8 @@
  * of the neighbour lists, nor a restart change a bit. */
 #include "common/engine/sim.h"
 
-#include "common/engine/accounts.h"
 #include "common/base/invariant.h"
+#include "common/engine/accounts.h"
 #include "common/engine/blowup.h"
 #include "common/engine/integrate.h"
 #include "common/engine/mass_scaling.h"
@@ -114,14 +114,16 @@ static void gather(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
     bool is_added = sim->model.flags & BRC_MODEL_ADDS;
+    bool books = is_added && BRC_OPTION(sim->run.ledger);
     for (size_t i = 0; i < b->n; i++) {
         brc_scale(b->f[i], sim->run.gravity, b->true_mass[i]);
         brc_set(b->t[i], 0, 0, 0);
         if (is_added) {
             brc_add(b->f[i], b->f[i], b->sum[i]);
             brc_copy(b->t[i], b->sum[i] + 4);
-            b->energy[i][BRC_ACCOUNT_BOND] += b->sum[i][7];
         }
+        if (books)
+            b->energy[i][BRC_ACCOUNT_BOND] += b->sum[i][7];
     }
     if (!is_added)
         add_rows(&sim->pairs, b->f, b->t);
