@@ -25,16 +25,15 @@ static const char *const result_files[] = {
     "curves.gp",    "cracks.png", "cracks.gp", "cracks.plot", "gnuplot.log"};
 enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
-/* The text of a file of the folder, to be freed; NULL when it is not there, or is not a plain file:
- * whatever else has this name is not a run's. */
-static char *read_plain(const char *dir, const char *name)
+/* The text of a file of the folder, to be freed, and its size, since a file that begins with a
+ * byte 0 is not empty. NULL when it is not there, or is not a plain file: whatever else has this
+ * name is not a run's. */
+static char *read_plain(const char *dir, const char *name, size_t *n)
 {
     char path[BRC_PATH_SIZE], *text = NULL;
     const struct brc_input in = {.path = path, .largest = BRC_INPUT_LARGEST, .is_plain = true};
     struct brc_context quiet = BRC_CONTEXT_INIT;
-    size_t n;
-    if (brc_folder_path(&quiet, dir, name, path) != 0 ||
-        brc_input_read(&quiet, &in, &text, &n) != 0)
+    if (brc_folder_path(&quiet, dir, name, path) != 0 || brc_input_read(&quiet, &in, &text, n) != 0)
         return NULL;
     return text;
 }
@@ -43,9 +42,10 @@ static char *read_plain(const char *dir, const char *name)
  * an empty one, which is worth nothing to anyone. */
 static bool read_log(const char *dir, bool *is_empty)
 {
-    char *log = read_plain(dir, "log");
-    *is_empty = !log || !*log;
-    bool is_ours = log && (!*log || strncmp(log, "breccia ", 8) == 0);
+    size_t n = 0;
+    char *log = read_plain(dir, "log", &n);
+    *is_empty = n == 0;
+    bool is_ours = log && (n == 0 || strncmp(log, "breccia ", 8) == 0);
     free(log);
     return is_ours;
 }
@@ -156,8 +156,9 @@ uint64_t brc_run_case_digest(const char *text)
 /* The kept case is just this text. */
 static bool is_kept(const char *dir, const char *text)
 {
-    char *found = read_plain(dir, "case.yaml");
-    bool is_same = found && strcmp(found, text) == 0;
+    size_t n;
+    char *found = read_plain(dir, "case.yaml", &n);
+    bool is_same = found && n == strlen(text) && memcmp(found, text, n) == 0;
     free(found);
     return is_same;
 }
@@ -167,7 +168,8 @@ static bool is_kept(const char *dir, const char *text)
  */
 static bool is_in_log(const char *dir)
 {
-    char *kept = read_plain(dir, "case.yaml"), *log = read_plain(dir, "log"), line[64];
+    size_t n;
+    char *kept = read_plain(dir, "case.yaml", &n), *log = read_plain(dir, "log", &n), line[64];
     snprintf(line, sizeof line, "\ncase.yaml: digest %016" PRIx64 "\n",
              kept ? brc_run_case_digest(kept) : 0);
     bool is_found = kept && log && strstr(log, line);

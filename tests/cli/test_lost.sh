@@ -44,6 +44,13 @@ for file in case.yaml log summary.json curve.csv curves.gp cracks.gp gnuplot.log
     refuse own "own already holds results ($file)" run -o own
     [ "$file" = log ] && refuse own "holds no run to resume" run -o own --resume
 done
+# a file that begins with a byte 0 is not empty
+printf '\0my own' >own.log
+rm -rf own
+mkdir own
+cp own.log own/log
+refuse own "own already holds results (log)" run -o own
+refuse own "holds no run to resume" run -o own --resume
 # frames of another name are never removed
 rm -rf own
 mkdir -p own/frames
