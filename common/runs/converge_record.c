@@ -5,6 +5,7 @@
 #include "common/runs/converge_record.h"
 
 #include "common/base/grow.h"
+#include "common/base/input_file.h"
 #include "common/runs/run.h"
 
 #include <errno.h>
@@ -87,18 +88,19 @@ static int read_line(struct brc_context *ctx, struct brc_converge_record *r, cha
 }
 
 /* Takes what is there; the text is taken apart in its place. A last line that a stop has cut is
- * dropped from the file; a cut header is no more than the beginning of ours. */
+ * dropped from the file; a cut header is no more than the beginning of ours. By the size and not up
+ * to a byte 0, which a power cut may leave: all lines behind it would be dropped. */
 static int read_text(struct brc_context *ctx, struct brc_converge_record *r, const char *header,
-                     char *text)
+                     char *text, size_t n)
 {
-    size_t size = strlen(header), n = strlen(text);
-    if (strncmp(text, header, n < size ? n : size) != 0)
+    size_t size = strlen(header);
+    if (memcmp(text, header, n < size ? n : size) != 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s holds other results than this case has; replace it with --force, or choose "
                  "another folder with -o",
                  r->path);
     char *line = n < size ? text : text + size;
-    for (char *end; (end = strchr(line, '\n')); line = end + 1) {
+    for (char *end; (end = memchr(line, '\n', n - (size_t)(line - text))); line = end + 1) {
         *end = '\0';
         BRC_TRY(read_line(ctx, r, line));
     }
@@ -109,15 +111,12 @@ static int read_text(struct brc_context *ctx, struct brc_converge_record *r, con
 
 static int read_old(struct brc_context *ctx, struct brc_converge_record *r, const char *header)
 {
-    char *text = NULL;
-    size_t size = 0;
-    rewind(r->file);
-    int code = 0;
-    if (getdelim(&text, &size, '\0', r->file) >= 0)
-        code = read_text(ctx, r, header, text);
+    const struct brc_input in = {.path = r->path, .largest = BRC_INPUT_LARGEST, .is_plain = true};
+    char *text;
+    size_t n;
+    BRC_TRY(brc_input_read(ctx, &in, &text, &n));
+    int code = read_text(ctx, r, header, text, n);
     free(text);
-    if (ferror(r->file))
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", r->path, strerror(errno));
     return code;
 }
 
