@@ -422,12 +422,12 @@ const struct brc_param *brc_params_renamed(struct brc_param_list list, const cha
     return NULL;
 }
 
-/* What is allowed, where the message does not say it yet: here alone, so that every message about a
- * number ends in its range. It is lengthened, as the first failure is the one that stays. */
+/* What is allowed, here alone, so that every message about a number ends in its range; what has no
+ * range says itself what it takes. It is lengthened, as the first failure is the one that stays. */
 static void add_range(struct brc_context *ctx, const struct brc_param *p)
 {
     size_t used = strlen(ctx->message);
-    if (p->range && !strstr(ctx->message, "allowed"))
+    if (p->range)
         snprintf(ctx->message + used, sizeof ctx->message - used, "; allowed %s%s%s%s", p->range,
                  brc_unit_blank(p->unit), brc_unit_shown(p->unit),
                  is_auto(p) ? ", or " BRC_AUTO : "");

@@ -211,6 +211,8 @@ static void bad_values_are_named(void **state)
     many[sizeof many - 1] = '\0';
     CHECK_FAILS(&ctx, brc_params_set(&ctx, sample_list, &v, "vgcm", "file", many, "f.yaml:12"),
                 BRC_ERR_INPUT, "f.yaml:12: vgcm.file: the text has 256 bytes; allowed at most 255");
+    CHECK_FAILS(&ctx, brc_params_set(&ctx, sample_list, &v, "vgcm", "count", "0", "allowed.yaml:1"),
+                BRC_ERR_INPUT, "vgcm.count: 0 is out of range; allowed [1, 1000]");
     assert_memory_equal(&v, &before, sizeof v);
 }
 
