@@ -123,6 +123,14 @@ static int list_body(struct brc_context *ctx, const struct grid *g, size_t i,
     return 0;
 }
 
+static int grid_make(struct brc_context *ctx, struct grid *g, struct brc_pool *pool)
+{
+    for (size_t i = 0; i < g->n; i++)
+        g->largest = fmax(g->largest, radius_of(g, i));
+    g->cell = g->radius ? 2 * g->largest + g->skin : point_cells * g->skin;
+    return grid_fill(ctx, g, pool);
+}
+
 int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
                    double skin, struct brc_neighbours *out)
 {
@@ -131,12 +139,31 @@ int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *
     out->n = 0;
     if (n < 2)
         return 0;
-    for (size_t i = 0; i < n; i++)
-        g.largest = fmax(g.largest, radius_of(&g, i));
-    g.cell = radius ? 2 * g.largest + skin : point_cells * skin;
-    int code = grid_fill(ctx, &g, &pool);
+    int code = grid_make(ctx, &g, &pool);
     for (size_t i = 0; code == 0 && i < n && (out->enough == 0 || out->n < out->enough); i++)
         code = list_body(ctx, &g, i, out);
+    brc_pool_free(&pool);
+    return code;
+}
+
+/* Pairs are listed for one point at a time, and not for points that have joined another: n points
+ * at one place have n * n / 2 pairs, which no memory holds. */
+int brc_grid_join(struct brc_context *ctx, const double (*x)[3], size_t n, double skin, int32_t *to)
+{
+    struct brc_pool pool = {0};
+    struct brc_neighbours near = {0};
+    struct grid g = {.x = x, .n = n, .skin = skin};
+    int code = grid_make(ctx, &g, &pool);
+    for (size_t i = 0; code == 0 && i < n; i++) {
+        near.n = 0;
+        if (to[i] == (int32_t)i)
+            code = list_body(ctx, &g, i, &near);
+        for (size_t k = 0; k < near.n; k++) {
+            int32_t high = near.pair[k][1];
+            to[high] = to[high] == high ? (int32_t)i : to[high];
+        }
+    }
+    brc_neighbours_free(&near);
     brc_pool_free(&pool);
     return code;
 }

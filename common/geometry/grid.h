@@ -22,5 +22,9 @@ void brc_neighbours_free(struct brc_neighbours *c);
  * farther apart than the skin. Memory in out is used again. */
 int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
                    double skin, struct brc_neighbours *out);
+/* Points that nearly coincide become one. to[i] is i for those that take part: in ascending order,
+ * each that is still its own becomes that of the others within the skin that are. */
+int brc_grid_join(struct brc_context *ctx, const double (*x)[3], size_t n, double skin,
+                  int32_t *to);
 
 #endif

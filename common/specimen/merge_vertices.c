@@ -49,12 +49,10 @@ struct merger {
 };
 
 /* A vertex becomes the first one kept within the tolerance, or is kept itself. Kept vertices are
- * farther apart than the tolerance, so that no chain of small steps can join distant ones. Pairs
- * come by their lower vertex: whether that is kept is known when its turn comes. */
+ * farther apart than the tolerance, so that no chain of small steps can join distant ones. */
 static int join_vertices(struct brc_context *ctx, struct merger *w)
 {
     struct brc_cell_complex *c = w->c;
-    struct brc_neighbours near = {0};
     w->to = brc_pool_alloc(ctx, &w->pool, c->n_vertices, sizeof *w->to);
     w->claim = brc_pool_alloc(ctx, &w->pool, c->n_vertices, sizeof *w->claim);
     if (w->pool.is_failed)
@@ -65,15 +63,7 @@ static int join_vertices(struct brc_context *ctx, struct merger *w)
             int32_t v = c->loop[c->facet[f].first + (size_t)i];
             w->to[v] = v;
         }
-    int code = brc_grid_pairs(ctx, (const double(*)[3])c->vertex, NULL, c->n_vertices, w->tolerance,
-                              &near);
-    for (size_t k = 0; code == 0 && k < near.n; k++) {
-        int32_t low = near.pair[k][0], high = near.pair[k][1];
-        if (w->to[low] == low && w->to[high] == high)
-            w->to[high] = low;
-    }
-    brc_neighbours_free(&near);
-    return code;
+    return brc_grid_join(ctx, (const double(*)[3])c->vertex, c->n_vertices, w->tolerance, w->to);
 }
 
 /* Removes repeated neighbours (x x) and spikes (x y x) from a closed loop, also across its end;

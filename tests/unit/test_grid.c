@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The broad phase against all pairs. */
+/* The broad phase against all pairs, and points that become one. */
 #include "common/geometry/grid.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
@@ -121,6 +121,42 @@ static void cell_borders_and_coincidence(void **state)
     assert_int_equal(check_all_pairs(t, 512, 1e-9), 1344 + 1);
 }
 
+/* Each in turn takes the others that are near, if none has taken it and it takes part at all. */
+static void points_join_the_first_near_one(void **state)
+{
+    struct trial *t = *state;
+    int32_t to[N_MAX], expected[N_MAX];
+    size_t joined = 0;
+    scatter(t, N_MAX, 1, 0);
+    for (int32_t i = 0; i < N_MAX; i++)
+        to[i] = expected[i] = i % 7 == 3 ? -1 : i;
+    for (int32_t i = 0; i < N_MAX; i++)
+        for (int32_t j = i + 1; j < N_MAX && expected[i] == i; j++)
+            if (expected[j] == j && brc_distance(t->x[j], t->x[i]) < 0.1) {
+                expected[j] = i;
+                joined++;
+            }
+    CHECK_OK(&t->ctx, brc_grid_join(&t->ctx, t->x, N_MAX, 0.1, to));
+    assert_memory_equal(to, expected, sizeof to);
+    assert_in_range(joined, 100, N_MAX - 100);
+}
+
+/* As the vertices of cells do whose seeds lie on a sphere. Their pairs would take 40 GB. */
+static void many_points_join_at_one_place(void **state)
+{
+    struct trial *t = *state;
+    const size_t n = 100000;
+    double(*x)[3] = brc_alloc(&t->ctx, n, sizeof *x);
+    int32_t *to = brc_alloc(&t->ctx, n, sizeof *to);
+    for (size_t i = 0; i < n; i++)
+        to[i] = (int32_t)i;
+    CHECK_OK(&t->ctx, brc_grid_join(&t->ctx, (const double(*)[3])x, n, 1e-9, to));
+    for (size_t i = 0; i < n; i++)
+        assert_int_equal(to[i], 0);
+    free(to);
+    free(x);
+}
+
 static void few_bodies(void **state)
 {
     struct trial *t = *state;
@@ -170,6 +206,8 @@ int main(void)
         TEST(one_giant_among_small_ones),
         TEST(runaways_cost_no_memory),
         TEST(cell_borders_and_coincidence),
+        TEST(points_join_the_first_near_one),
+        TEST(many_points_join_at_one_place),
         TEST(few_bodies),
         TEST(platens_see_whom_they_may_touch),
     };
