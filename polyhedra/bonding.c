@@ -5,7 +5,6 @@
 #include "polyhedra/poly.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Material points, normals and tangents of a contact's bond in the frames of its bodies; n from a.
  */
@@ -94,54 +93,38 @@ static int open_platens(struct brc_sim *sim, struct poly_state *st)
     struct brc_facing *facing;
     size_t n_facing, n = 0;
     BRC_TRY(brc_platens_facing(sim, &facing, &n_facing));
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, n_facing, sizeof *pair);
-    int code = pair != NULL ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < n_facing; i++) {
-        if (!facing[i].is_on)
-            continue;
-        pair[n][0] = facing[i].cell;
-        pair[n++][1] = facing[i].body;
-    }
-    if (code == 0)
-        code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
-    for (size_t i = 0; code == 0 && i < n_facing; i++) {
-        if (!facing[i].is_on)
-            continue;
+    for (size_t i = 0; i < n_facing; i++)
+        if (facing[i].is_on)
+            facing[n++] = facing[i];
+    int code = brc_contacts_open(sim->ctx, &sim->platens, facing, n);
+    for (size_t i = 0; code == 0 && i < n; i++) {
         int64_t contact = brc_contacts_find(&sim->platens, facing[i].cell, facing[i].body);
         open_hold(sim, st, (size_t)contact, brc_sim_platen(sim, facing[i].body),
                   (size_t)facing[i].facet);
     }
-    free(pair);
     free(facing);
     return code;
 }
 
-/* The facets of a specimen are sorted by their cells, so the list of pairs is sorted as
- * brc_contacts_set wants it, and contact i is that of facets[i]. */
+/* Two grains have one facet at most, so contact i is that of the i-th one. */
 int poly_open_bonds(struct brc_sim *sim, void *state)
 {
     const struct brc_facets *f = &sim->specimen->facets;
     struct poly_state *st = state;
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, f->n_facets, sizeof *pair);
-    size_t *facets = brc_alloc(sim->ctx, f->n_facets, sizeof *facets), n = 0;
-    int code = pair != NULL && facets != NULL ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < f->n_facets; i++) {
-        if (f->cell[i][1] < 0 || !f->is_contact[i])
-            continue;
-        memcpy(pair[n], f->cell[i], sizeof *pair);
-        facets[n++] = i;
-    }
-    if (code == 0)
-        code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
+    struct brc_facing *facet = brc_alloc(sim->ctx, f->n_facets, sizeof *facet);
+    size_t n = 0;
+    if (facet == NULL)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0 && f->is_contact[i])
+            facet[n++] = (struct brc_facing){f->cell[i][0], f->cell[i][1], (int32_t)i, false};
+    int code = brc_contacts_open(sim->ctx, &sim->pairs, facet, n);
     for (size_t i = 0; code == 0 && i < n; i++)
-        open_bond(sim, st, i, facets[i]);
+        open_bond(sim, st, i, (size_t)facet[i].facet);
+    free(facet);
     if (st->n_bonds > 0) {
         st->mean_area /= (double)st->n_bonds;
         st->mean_length /= (double)st->n_bonds;
     }
-    if (code == 0)
-        code = open_platens(sim, st);
-    free(pair);
-    free(facets);
-    return code;
+    return code == 0 ? open_platens(sim, st) : code;
 }

@@ -6,22 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int compare_pairs(const void *x, const void *y)
-{
-    const int32_t *p = x, *q = y;
-    if (p[0] != q[0])
-        return p[0] < q[0] ? -1 : 1;
-    return (p[1] > q[1]) - (p[1] < q[1]);
-}
-
 /* --- contacts --------------------------------------------------------------------------------- */
 
-/* A contact that is bonded or touches has a state, which must not be lost though the neighbour
- * list lacks it: its lists have been made for a range of their own. */
-static bool is_kept(const struct brc_contacts *c, size_t contact)
+/* The neighbours, and what is bonded or touches: such a contact has a state, which must not be lost
+ * though the neighbour list lacks it, as its lists have been made for a range of their own. */
+static bool is_kept(const void *user, const struct brc_contacts *c, const int32_t pair[2],
+                    int64_t contact, bool is_near)
 {
     const struct poly_points *points = c->point_columns;
-    if (c->status[contact] == BRC_INTACT)
+    (void)user, (void)pair;
+    if (is_near || c->status[contact] == BRC_INTACT)
         return true;
     for (int32_t k = 0; k < c->np[contact]; k++)
         if (points->spring[(size_t)c->p0[contact] + (size_t)k][POLY_WEIGHT] > 0)
@@ -29,38 +23,12 @@ static bool is_kept(const struct brc_contacts *c, size_t contact)
     return false;
 }
 
-/* The neighbours, and the contacts that are bonded or touch. Both are sorted by (a, b), so that one
- * pass makes their union, and the order of contacts follows from the numbers of the bodies alone,
- * never from when they were found. */
-static int merge_contacts(struct brc_context *ctx, struct brc_contacts *c,
-                          const struct brc_neighbours *near)
-{
-    int32_t(*pair)[2] = brc_alloc(ctx, near->n + c->n, sizeof *pair);
-    if (pair == NULL)
-        return BRC_ERR_MEMORY;
-    size_t n = 0, i = 0;
-    for (size_t contact = 0; contact < c->n; contact++) {
-        const int32_t own[2] = {c->a[contact], c->b[contact]};
-        while (i < near->n && compare_pairs(near->pair[i], own) < 0)
-            memcpy(pair[n++], near->pair[i++], sizeof *pair);
-        bool listed = i < near->n && compare_pairs(near->pair[i], own) == 0;
-        i += listed;
-        if (listed || is_kept(c, contact))
-            memcpy(pair[n++], own, sizeof *pair);
-    }
-    while (i < near->n)
-        memcpy(pair[n++], near->pair[i++], sizeof *pair);
-    int code = brc_contacts_set(ctx, c, (const int32_t(*)[2])pair, n);
-    free(pair);
-    return code;
-}
-
 int poly_update_contacts(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
                          const struct brc_neighbours *platens)
 {
     (void)state;
-    BRC_TRY(merge_contacts(sim->ctx, &sim->pairs, grains));
-    return merge_contacts(sim->ctx, &sim->platens, platens);
+    BRC_TRY(brc_contacts_merge(sim->ctx, &sim->pairs, grains, is_kept, NULL));
+    return brc_contacts_merge(sim->ctx, &sim->platens, platens, is_kept, NULL);
 }
 
 /* --- feature lists ---------------------------------------------------------------------------- */

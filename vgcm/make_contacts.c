@@ -206,27 +206,25 @@ static double area_ratio(const struct vgcm_census *census, const struct brc_face
     return census->is_projected ? fmax(brc_oblique_cos(facets, facets->seed, facet), LEAST_COS) : 1;
 }
 
-/* The specimen sorts facets by their cells, so that contact i is that of facet[i]. */
+/* Two grains have one facet at most, so contact i is that of the i-th one. */
 static int bond_pairs(struct brc_sim *sim, const struct vgcm_law *law)
 {
     const struct brc_facets *facets = &sim->specimen->facets;
     struct vgcm_census census;
     vgcm_census_measure(&census, sim->params, facets);
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, census.n_contacts, sizeof *pair);
-    size_t *facet = brc_alloc(sim->ctx, census.n_contacts, sizeof *facet), n = 0;
-    int code = pair && facet ? 0 : BRC_ERR_MEMORY;
-    for (size_t i = 0; code == 0 && i < facets->n_facets; i++) {
-        if (!is_bonded(&census, sim->params, facets, i))
-            continue;
-        pair[n][0] = facets->cell[i][0];
-        pair[n][1] = facets->cell[i][1];
-        facet[n++] = i;
+    struct brc_facing *facet = brc_alloc(sim->ctx, census.n_contacts, sizeof *facet);
+    size_t n = 0;
+    if (!facet)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < facets->n_facets; i++)
+        if (is_bonded(&census, sim->params, facets, i))
+            facet[n++] =
+                (struct brc_facing){facets->cell[i][0], facets->cell[i][1], (int32_t)i, false};
+    int code = brc_contacts_open(sim->ctx, &sim->pairs, facet, n);
+    for (size_t i = 0; code == 0 && i < n; i++) {
+        size_t at = (size_t)facet[i].facet;
+        code = bond_contact(sim, law, i, at, area_ratio(&census, facets, at));
     }
-    if (code == 0)
-        code = brc_contacts_set(sim->ctx, &sim->pairs, (const int32_t(*)[2])pair, n);
-    for (size_t i = 0; code == 0 && i < n; i++)
-        code = bond_contact(sim, law, i, facet[i], area_ratio(&census, facets, facet[i]));
-    free(pair);
     free(facet);
     return code;
 }
@@ -319,27 +317,18 @@ static int platen_contact(struct brc_sim *sim, const struct vgcm_law *law, size_
  * the list. */
 static int bond_platens(struct brc_sim *sim, const struct vgcm_law *law)
 {
+    const struct brc_contacts *c = &sim->platens;
     struct brc_facing *facing = NULL;
-    size_t n_facing = 0, n = 0;
-    BRC_TRY(brc_platens_facing(sim, &facing, &n_facing));
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, n_facing, sizeof *pair);
-    int code = pair ? 0 : BRC_ERR_MEMORY;
-    for (size_t k = 0; code == 0 && k < n_facing; k++) {
-        if (n > 0 && pair[n - 1][0] == facing[k].cell && pair[n - 1][1] == facing[k].body)
-            continue;
-        pair[n][0] = facing[k].cell;
-        pair[n++][1] = facing[k].body;
-    }
-    if (code == 0)
-        code = brc_contacts_set(sim->ctx, &sim->platens, (const int32_t(*)[2])pair, n);
-    for (size_t i = 0, k = 0; code == 0 && i < n; i++) {
+    size_t n = 0;
+    BRC_TRY(brc_platens_facing(sim, &facing, &n));
+    int code = brc_contacts_open(sim->ctx, &sim->platens, facing, n);
+    for (size_t i = 0, k = 0; code == 0 && i < c->n; i++) {
         size_t first = k;
-        while (k < n_facing && facing[k].cell == pair[i][0] && facing[k].body == pair[i][1])
+        while (k < n && facing[k].cell == c->a[i] && facing[k].body == c->b[i])
             k++;
         code = platen_contact(sim, law, i, facing + first, k - first);
     }
     free(facing);
-    free(pair);
     return code;
 }
 
@@ -370,52 +359,22 @@ static bool touching_distance(const struct brc_sim *sim, const int32_t pair[2], 
 }
 
 /* A facet at a platen stays for good: it may come back, and its points' gaps at the start are part
- * of the test. A contact with a force stays until it has none, or energy would vanish with it.
- * Whether an existing contact stays although the candidates no longer name it. */
-static bool must_stay(const struct brc_contacts *c, size_t contact, bool is_platen)
+ * of the test. A contact with a force stays until it has none, or energy would vanish with it. What
+ * is new is watched from the skin of the neighbour search on, before it touches, and the list need
+ * not be made anew in each step; beyond a sharp edge a sphere may meet the side of a strip, which
+ * is not part of its surface. */
+static bool stays(const void *user, const struct brc_contacts *c, const int32_t pair[2],
+                  int64_t contact, bool is_near)
 {
-    bool is_facet = vgcm_columns(c)->phase[contact] != VGCM_SPHERE;
-    return (is_facet && is_platen) || c->status[contact] == BRC_INTACT ||
-           brc_norm2(c->f[contact]) > 0;
-}
-
-/* With the skin of the neighbour search, so that a pair is watched before it touches, and the list
- * need not be made anew in each step. Beyond a sharp edge a sphere may meet the side of a
- * strip, which is not part of its surface. */
-static bool may_open(const struct brc_sim *sim, const int32_t pair[2])
-{
+    const struct brc_sim *sim = user;
     double touch, now;
-    return touching_distance(sim, pair, &touch, &now) && now < touch + sim->skin;
-}
-
-/* Sorted union of the contacts that stay and the candidates that may touch. Both lists are
- * sorted by (a, b), so that one pass does it, and the order of contacts follows from the numbers
- * of their bodies alone, never from when they were found. */
-static size_t merge_contacts(const struct brc_sim *sim, const struct brc_contacts *c,
-                             const struct brc_neighbours *list, int32_t (*pair)[2])
-{
-    bool is_platen = c == &sim->platens;
-    size_t n = 0, contact = 0, k = 0;
-    while (contact < c->n || k < list->n) {
-        int64_t of_contact = INT64_MAX, of_list = INT64_MAX;
-        if (contact < c->n)
-            of_contact = ((int64_t)c->a[contact] << 32) | c->b[contact];
-        if (k < list->n)
-            of_list = ((int64_t)list->pair[k][0] << 32) | list->pair[k][1];
-        int32_t next[2] = {(int32_t)((of_contact < of_list ? of_contact : of_list) >> 32),
-                           (int32_t)(of_contact < of_list ? of_contact : of_list)};
-        bool has_contact = of_contact <= of_list, is_listed = of_list <= of_contact;
-        bool keep = has_contact && must_stay(c, contact, is_platen);
-        if (!keep && is_listed)
-            keep = (has_contact && c->status[contact] == BRC_BROKEN) || may_open(sim, next);
-        if (keep) {
-            pair[n][0] = next[0];
-            pair[n++][1] = next[1];
-        }
-        contact += has_contact;
-        k += is_listed;
+    if (contact >= 0) {
+        bool is_facet = vgcm_columns(c)->phase[contact] != VGCM_SPHERE;
+        if ((is_facet && c == &sim->platens) || c->status[contact] == BRC_INTACT ||
+            brc_norm2(c->f[contact]) > 0 || (is_near && c->status[contact] == BRC_BROKEN))
+            return true;
     }
-    return n;
+    return is_near && touching_distance(sim, pair, &touch, &now) && now < touch + sim->skin;
 }
 
 /* Two grains without a bonded facet have no common plane, so that spheres are all that is left to
@@ -456,23 +415,10 @@ static int sphere_contact(struct brc_sim *sim, const struct vgcm_law *law, struc
 static int update_contacts(struct brc_sim *sim, const struct vgcm_law *law, struct brc_contacts *c,
                            const struct brc_neighbours *list)
 {
-    int32_t(*pair)[2] = brc_alloc(sim->ctx, c->n + list->n, sizeof *pair);
-    if (!pair)
-        return BRC_ERR_MEMORY;
-    size_t n = merge_contacts(sim, c, list, pair);
-    int code = 0;
-    /* most searches find what is there already: then no table moves, and what hangs on the version
-     * of the list stays */
-    bool same = n == c->n;
-    for (size_t i = 0; same && i < n; i++)
-        same = pair[i][0] == c->a[i] && pair[i][1] == c->b[i];
-    if (!same)
-        code = brc_contacts_set(sim->ctx, c, (const int32_t(*)[2])pair, n);
-    free(pair);
-    for (size_t i = 0; code == 0 && i < n; i++)
+    BRC_TRY(brc_contacts_merge(sim->ctx, c, list, stays, sim));
+    for (size_t i = 0; i < c->n; i++)
         if (c->np[i] == 0 && vgcm_columns(c)->phase[i] == VGCM_SPHERE)
-            code = sphere_contact(sim, law, c, i);
-    BRC_TRY(code);
+            BRC_TRY(sphere_contact(sim, law, c, i));
     return brc_contacts_tidy(sim->ctx, c);
 }
 

@@ -9,6 +9,7 @@
 #include "common/engine/contacts.h"
 
 #include "common/base/invariant.h"
+#include "common/engine/platens.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,11 +53,10 @@ void brc_contacts_free(struct brc_contacts *c)
     memset(c, 0, sizeof *c);
 }
 
-static int compare_pairs(int32_t a, int32_t b, const int32_t pair[2])
+/* Pairs in their order, as numbers. */
+static int64_t key_of(int32_t a, int32_t b)
 {
-    if (a != pair[0])
-        return a < pair[0] ? -1 : 1;
-    return (b > pair[1]) - (b < pair[1]);
+    return ((int64_t)a << 32) | b;
 }
 
 /* Rows of each body by counting; rows are sorted, so each list comes out ascending. */
@@ -92,24 +92,27 @@ static int32_t padded(int32_t np, int32_t lanes)
 }
 
 /* Both lists are sorted, so one pass finds what stays. Rows that stay are moved and not made anew:
- * their history (bond, friction, damage) is the state of the specimen. */
+ * their history (bond, friction, damage) is the state of the specimen. Most searches find what is
+ * there already: then no table moves. */
 int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int32_t (*pair)[2],
                      size_t n)
 {
     size_t *from = brc_alloc(ctx, n, sizeof *from);
+    bool is_same = n == c->table.n;
     if (!from)
         return BRC_ERR_MEMORY;
     for (size_t i = 0, old = 0; i < n; i++) {
+        int64_t key = key_of(pair[i][0], pair[i][1]);
         BRC_ASSERT(pair[i][0] >= 0 && pair[i][0] < pair[i][1]);
         BRC_ASSERT((size_t)pair[i][1] < c->n_bodies);
-        BRC_ASSERT(i == 0 || compare_pairs(pair[i - 1][0], pair[i - 1][1], pair[i]) < 0);
-        while (old < c->n && compare_pairs(c->a[old], c->b[old], pair[i]) < 0)
+        BRC_ASSERT(i == 0 || key_of(pair[i - 1][0], pair[i - 1][1]) < key);
+        while (old < c->n && key_of(c->a[old], c->b[old]) < key)
             old++;
-        bool kept = old < c->n && compare_pairs(c->a[old], c->b[old], pair[i]) == 0;
-        from[i] = kept ? old : BRC_NEW_ROW;
+        from[i] = old < c->n && key_of(c->a[old], c->b[old]) == key ? old : BRC_NEW_ROW;
+        is_same = is_same && from[i] == i;
     }
-    int code = brc_table_gather(ctx, &c->table, from, n);
-    if (code == 0)
+    int code = is_same ? 0 : brc_table_gather(ctx, &c->table, from, n);
+    if (code == 0 && !is_same)
         code = brc_table_gather(ctx, &c->model, from, n);
     for (size_t i = 0; code == 0 && i < n; i++) {
         if (from[i] != BRC_NEW_ROW)
@@ -120,11 +123,53 @@ int brc_contacts_set(struct brc_context *ctx, struct brc_contacts *c, const int3
     }
     free(from);
     BRC_TRY(code);
-    c->n = n;
-    c->version++;
-    c->k_version++;
-    BRC_TRY(build_adjacency(ctx, c));
+    if (!is_same) {
+        c->n = n;
+        c->k_version++;
+        BRC_TRY(build_adjacency(ctx, c));
+    }
     return brc_contacts_tidy(ctx, c);
+}
+
+int brc_contacts_merge(struct brc_context *ctx, struct brc_contacts *c,
+                       const struct brc_neighbours *near, brc_contacts_stays *stays,
+                       const void *user)
+{
+    int32_t(*pair)[2] = brc_alloc(ctx, near->n + c->n, sizeof *pair);
+    if (!pair)
+        return BRC_ERR_MEMORY;
+    size_t n = 0, i = 0, k = 0;
+    while (i < c->n || k < near->n) {
+        int64_t own = i < c->n ? key_of(c->a[i], c->b[i]) : INT64_MAX;
+        int64_t found = k < near->n ? key_of(near->pair[k][0], near->pair[k][1]) : INT64_MAX;
+        bool is_there = own <= found, is_near = found <= own;
+        pair[n][0] = is_there ? c->a[i] : near->pair[k][0];
+        pair[n][1] = is_there ? c->b[i] : near->pair[k][1];
+        n += stays(user, c, pair[n], is_there ? (int64_t)i : -1, is_near);
+        i += is_there;
+        k += is_near;
+    }
+    int code = brc_contacts_set(ctx, c, (const int32_t(*)[2])pair, n);
+    free(pair);
+    return code;
+}
+
+int brc_contacts_open(struct brc_context *ctx, struct brc_contacts *c,
+                      const struct brc_facing *facet, size_t n)
+{
+    int32_t(*pair)[2] = brc_alloc(ctx, n, sizeof *pair);
+    size_t n_pairs = 0;
+    if (!pair)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < n; i++) {
+        if (i > 0 && facet[i].cell == facet[i - 1].cell && facet[i].body == facet[i - 1].body)
+            continue;
+        pair[n_pairs][0] = facet[i].cell;
+        pair[n_pairs++][1] = facet[i].body;
+    }
+    int code = brc_contacts_set(ctx, c, (const int32_t(*)[2])pair, n_pairs);
+    free(pair);
+    return code;
 }
 
 int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t i, int32_t np)
@@ -146,27 +191,16 @@ int brc_contacts_points(struct brc_context *ctx, struct brc_contacts *c, size_t 
     return 0;
 }
 
-/* By halving: rows are sorted. a and b are columns of their own, so bsearch, which wants one array
- * of pairs, does not fit. */
+/* Among the rows of body a: they are few, and nobody asks within a step. */
 int64_t brc_contacts_find(const struct brc_contacts *c, int32_t a, int32_t b)
 {
-    const int32_t pair[2] = {a, b};
-    size_t low = 0, high = c->n;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        int side = compare_pairs(c->a[middle], c->b[middle], pair);
-        if (side == 0)
-            return (int64_t)middle;
-        if (side < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
+    for (size_t k = c->adjacent_first[a]; k < c->adjacent_first[a + 1]; k++)
+        if (c->b[c->adjacent[k] / 2] == b)
+            return c->adjacent[k] / 2;
     return -1;
 }
 
-/* Moves the ranges of points to follow each other, each padded to a multiple of lanes. */
-static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lanes)
+int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c, int32_t lanes)
 {
     size_t total = 0, k = 0;
     for (size_t i = 0; i < c->n; i++)
@@ -188,12 +222,7 @@ static int arrange(struct brc_context *ctx, struct brc_contacts *c, int32_t lane
 
 int brc_contacts_compact(struct brc_context *ctx, struct brc_contacts *c)
 {
-    return arrange(ctx, c, c->lanes);
-}
-
-int brc_contacts_pack(struct brc_context *ctx, struct brc_contacts *c)
-{
-    return arrange(ctx, c, 1);
+    return brc_contacts_pack(ctx, c, c->lanes);
 }
 
 /* Files hold packed ranges and no places in memory, so both follow from the numbers of points. A
@@ -210,7 +239,6 @@ int brc_contacts_restore(struct brc_context *ctx, struct brc_contacts *c)
     if ((size_t)p != c->points.n || c->model.n != c->n)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "saved contacts do not fit together: %zu points, %d expected",
                  c->points.n, p);
-    c->version++;
     return build_adjacency(ctx, c);
 }
 

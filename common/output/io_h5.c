@@ -167,7 +167,7 @@ int brc_h5_save(struct brc_context *ctx, const char *path, struct brc_sim *sim,
     struct brc_h5_file f;
     struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens};
     for (int i = 0; i < 2; i++)
-        BRC_TRY(brc_contacts_pack(ctx, sets[i]));
+        BRC_TRY(brc_contacts_pack(ctx, sets[i], 1));
     int code = brc_h5_create(ctx, path, &brc_checksum_state, &f);
     if (code == 0)
         code = brc_h5_finish(&f, write_all(&f, sim, extra));

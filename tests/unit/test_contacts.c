@@ -105,9 +105,9 @@ static void survivors_keep_state_and_points(void **state)
     set_random(t);
     name_rows(t);
     for (int round = 0; round < 20; round++) {
-        int64_t version = t->c.version;
+        int64_t version = t->c.k_version;
         set_random(t);
-        assert_true(t->c.version > version);
+        assert_true(t->c.k_version > version);
         size_t n_kept = 0;
         for (size_t i = 0; i < t->c.n; i++) {
             bool kept = row_marks(t)->mark[i] != 0;
