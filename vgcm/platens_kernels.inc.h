@@ -49,20 +49,6 @@ struct vgcm_platen_points {
     struct vgcm_friction_lanes q;
 };
 
-/* A vector of space in the contact's frame. */
-static void vgcm_platen_to_frame(const struct vgcm_platen_loop *w, double r[3], const double v[3])
-{
-    for (int k = 0; k < 3; k++)
-        r[k] = brc_dot(v, w->frame[k]);
-}
-
-static void vgcm_platen_to_space(const struct vgcm_platen_loop *w, double v[3], const double r[3])
-{
-    brc_scale(v, w->frame[0], r[0]);
-    brc_axpy(v, r[1], w->frame[1]);
-    brc_axpy(v, r[2], w->frame[2]);
-}
-
 /* The frame that rides is normalised in each step: products of many turns would drift from length
  * 1. */
 static void vgcm_platen_frames(struct vgcm_platen_loop *w, size_t i)
@@ -85,13 +71,13 @@ static void vgcm_platen_frames(struct vgcm_platen_loop *w, size_t i)
     brc_cross(across, w->f->n[i], w->f->s[i]);
     brc_sub(move, b->v[w->c->b[i]], b->v[a]);
     brc_scale(move, move, dt);
-    vgcm_platen_to_frame(w, w->turn, turn);
-    vgcm_platen_to_frame(w, w->move, move);
+    brc_mat_mul(w->turn, w->frame, turn);
+    brc_mat_mul(w->move, w->frame, move);
     brc_sub(over, b->x[a], b->x[w->c->b[i]]);
-    vgcm_platen_to_frame(w, w->centre, over);
-    vgcm_platen_to_frame(w, w->riding[0], w->f->n[i]);
-    vgcm_platen_to_frame(w, w->riding[1], w->f->s[i]);
-    vgcm_platen_to_frame(w, w->riding[2], across);
+    brc_mat_mul(w->centre, w->frame, over);
+    brc_mat_mul(w->riding[0], w->frame, w->f->n[i]);
+    brc_mat_mul(w->riding[1], w->frame, w->f->s[i]);
+    brc_mat_mul(w->riding[2], w->frame, across);
 }
 
 /* A vector from the contact's frame to the frame of a curved surface at each point, or back. All
@@ -279,13 +265,13 @@ static void vgcm_platen_begin(struct vgcm_platen_loop *w, size_t i)
 }
 
 /* Force on the platen and moments about both centres, in space. */
-static void vgcm_platen_finish(const struct vgcm_platen_loop *w, size_t i, const double force[6])
+static void vgcm_platen_finish(struct vgcm_platen_loop *w, size_t i, const double force[6])
 {
     const struct brc_bodies *b = &w->sim->bodies;
     struct brc_contacts *c = w->c;
     double moment[3], arm[3];
-    vgcm_platen_to_space(w, c->f[i], force);
-    vgcm_platen_to_space(w, moment, force + 3);
+    brc_mat_mul_t(c->f[i], w->frame, force);
+    brc_mat_mul_t(moment, w->frame, force + 3);
     brc_scale(c->ta[i], moment, -1);
     brc_sub(arm, b->x[c->a[i]], b->x[c->b[i]]);
     brc_cross(c->tb[i], arm, c->f[i]);

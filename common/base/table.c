@@ -24,16 +24,8 @@ enum {
 
 size_t brc_type_size(enum brc_type type)
 {
-    switch (type) {
-    case BRC_F64:
-    case BRC_I64:
-        return 8;
-    case BRC_I32:
-        return 4;
-    case BRC_U8:
-        return 1;
-    }
-    return 0;
+    static const size_t size[] = {[BRC_F64] = 8, [BRC_I32] = 4, [BRC_U8] = 1, [BRC_I64] = 8};
+    return size[type];
 }
 
 size_t brc_field_size(const struct brc_field *f)

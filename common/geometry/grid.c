@@ -5,6 +5,7 @@
 
 #include "common/base/grow.h"
 #include "common/base/pool.h"
+#include "common/base/tuples.h"
 #include "common/geometry/vec.h"
 
 #include <stdlib.h>
@@ -79,12 +80,6 @@ static int grid_fill(struct brc_context *ctx, struct grid *g, struct brc_pool *p
     return 0;
 }
 
-static int compare_high(const void *p, const void *q)
-{
-    const int32_t *a = p, *b = q;
-    return (a[1] > b[1]) - (a[1] < b[1]);
-}
-
 /* Appends the pairs (i, j > i) of body i with those of one cell. Other cells may share its bucket.
  */
 static int list_cell(struct brc_context *ctx, const struct grid *g, const int64_t at[3], size_t i,
@@ -119,7 +114,7 @@ static int list_body(struct brc_context *ctx, const struct grid *g, size_t i,
             for (at[0] = low[0]; at[0] <= high[0]; at[0]++)
                 BRC_TRY(list_cell(ctx, g, at, i, out));
     if (out->n > start)
-        qsort(out->pair + start, out->n - start, sizeof *out->pair, compare_high);
+        qsort(out->pair + start, out->n - start, sizeof *out->pair, brc_tuple2_compare);
     return 0;
 }
 
