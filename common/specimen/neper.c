@@ -8,7 +8,7 @@
 #include "common/geometry/edges.h"
 #include "common/geometry/vec.h"
 
-enum { LABEL_SIZE = 64 };
+#include <stdlib.h>
 
 struct writer {
     FILE *out;
@@ -129,29 +129,15 @@ static void put_members(FILE *out, const int32_t *part_of, size_t n, int32_t par
     fputc('\n', out);
 }
 
-/* "x0" for boxes, else "f1", as Neper names the faces of its own domains. */
-static void face_label(const struct brc_specimen *s, size_t face, char label[LABEL_SIZE])
+/* "x0" for boxes, else "f1", as Neper names the faces of its own domains. Edges and vertices have
+ * those of their faces, one after the other. */
+static void put_label(const struct writer *w, size_t face)
 {
-    int id = s->domain.plane[face].id;
-    if (s->params.shape == BRC_SHAPE_BOX)
-        snprintf(label, LABEL_SIZE, "%c%d", "xyz"[id / 2], id % 2);
+    int id = w->s->domain.plane[face].id;
+    if (w->s->params.shape == BRC_SHAPE_BOX)
+        fprintf(w->out, "%c%d", "xyz"[id / 2], id % 2);
     else
-        snprintf(label, LABEL_SIZE, "f%zu", face + 1);
-}
-
-/* Labels of all faces that have the vertex, one after the other. */
-static void put_vertex_label(const struct writer *w, int32_t v)
-{
-    const struct brc_convex *d = &w->s->domain;
-    char label[LABEL_SIZE];
-    fputc(' ', w->out);
-    for (size_t f = 0; f < d->n_faces; f++)
-        for (size_t i = d->first[f]; i < d->first[f + 1]; i++)
-            if (d->loop[i] == v) {
-                face_label(w->s, f, label);
-                fputs(label, w->out);
-            }
-    fputc('\n', w->out);
+        fprintf(w->out, "f%zu", face + 1);
 }
 
 /* Each with the vertex of the cells that lies there. The nearest one is it, by a search through
@@ -169,7 +155,12 @@ static void put_domain_vertices(const struct writer *w)
                 nearest = i;
         fprintf(w->out, "   %zu", v + 1);
         put_point(w->out, d->vertex[v]);
-        put_vertex_label(w, (int32_t)v);
+        fputc(' ', w->out);
+        for (size_t face = 0; face < d->n_faces; face++)
+            for (size_t i = d->first[face]; i < d->first[face + 1]; i++)
+                if (d->loop[i] == (int32_t)v)
+                    put_label(w, face);
+        fputc('\n', w->out);
         fprintf(w->out, "      1 %zu\n", nearest + 1);
     }
 }
@@ -179,10 +170,10 @@ static void put_domain_edges(const struct writer *w)
     fprintf(w->out, "  *edge\n   %zu\n", w->domain_edges.n);
     for (size_t i = 0; i < w->domain_edges.n; i++) {
         const struct brc_side *e = &w->domain_edges.side[w->domain_edges.first[i]];
-        char a[LABEL_SIZE], b[LABEL_SIZE];
-        face_label(w->s, (size_t)e[0].face, a);
-        face_label(w->s, (size_t)e[1].face, b);
-        fprintf(w->out, "   %zu 2 %d %d\n     %s%s\n", i + 1, e->low + 1, e->high + 1, a, b);
+        fprintf(w->out, "   %zu 2 %d %d\n     ", i + 1, e->low + 1, e->high + 1);
+        put_label(w, (size_t)e[0].face);
+        put_label(w, (size_t)e[1].face);
+        fputc('\n', w->out);
         put_members(w->out, w->domain_edge, w->edges.n, (int32_t)i);
     }
 }
@@ -193,14 +184,14 @@ static void put_domain_faces(const struct writer *w)
     const struct brc_facets *f = &w->s->facets;
     fprintf(w->out, "  *face\n   %zu\n", d->n_faces);
     for (size_t i = 0; i < d->n_faces; i++) {
-        char label[LABEL_SIZE];
-        face_label(w->s, i, label);
         fprintf(w->out, "   %zu", i + 1);
         put_loop(w->out, &w->domain_edges, d->loop + d->first[i], d->first[i + 1] - d->first[i],
                  false);
         fprintf(w->out, "     plane\n     4 %.17g", d->plane[i].d);
         put_point(w->out, d->plane[i].n);
-        fprintf(w->out, "\n     %s\n", label);
+        fputs("\n     ", w->out);
+        put_label(w, i);
+        fputc('\n', w->out);
         put_members(w->out, f->face, f->n_facets, d->plane[i].id);
     }
 }
@@ -218,13 +209,13 @@ static void put_all(const struct writer *w)
     fputs("***end\n", w->out);
 }
 
-static int write_all(struct brc_context *ctx, struct writer *w, struct brc_pool *pool)
+static int write_all(struct brc_context *ctx, struct writer *w)
 {
     const struct brc_facets *f = &w->s->facets;
     const struct brc_convex *d = &w->s->domain;
     BRC_TRY(brc_edges_find(ctx, &w->edges, f->n_facets, f->first, f->loop));
     BRC_TRY(brc_edges_find(ctx, &w->domain_edges, d->n_faces, d->first, d->loop));
-    w->domain_edge = brc_pool_alloc(ctx, pool, w->edges.n, sizeof *w->domain_edge);
+    w->domain_edge = brc_alloc(ctx, w->edges.n, sizeof *w->domain_edge);
     if (!w->domain_edge)
         return BRC_ERR_MEMORY;
     find_domain_edges(w);
@@ -235,9 +226,8 @@ static int write_all(struct brc_context *ctx, struct writer *w, struct brc_pool 
 int brc_neper_write(struct brc_context *ctx, FILE *out, const struct brc_specimen *s)
 {
     struct writer w = {.out = out, .s = s};
-    struct brc_pool pool = {0};
-    int code = write_all(ctx, &w, &pool);
-    brc_pool_free(&pool);
+    int code = write_all(ctx, &w);
+    free(w.domain_edge);
     brc_edges_free(&w.edges);
     brc_edges_free(&w.domain_edges);
     return code;

@@ -25,9 +25,10 @@ struct brc_neper_file {
     int line;
     char token[BRC_NEPER_TOKEN];
     bool is_format_2; /* 2.0: faces of the domain are given by their equations */
-    size_t n_cells;   /* with faces; others are left out */
+    size_t n_cells;   /* those that have no faces included */
     size_t n_vertices, n_faces, n_domain, n_loop;
-    double (*seed)[4]; /* with weight; NULL: the file has none */
+    double (*seed)[4]; /* with weight; 0 where the file has none */
+    bool has_seeds;
     double (*vertex)[3];
     struct brc_neper_face *face;
     int32_t *loop;

@@ -143,49 +143,58 @@ static int read_kind(struct brc_neper_file *t)
     return 0;
 }
 
-static int read_cells(struct brc_neper_file *t)
+/* Goes to a part of the file that begins with the number of its entries. */
+static int begin(struct brc_neper_file *t, const char *heading, bool is_from_start, size_t *n)
 {
-    BRC_TRY(find(t, "**cell", true));
-    BRC_TRY(count(t, &t->n_cells));
-    while (next(t) && strncmp(t->token, "**", 2) != 0)
-        if (strcmp(t->token, "*seed") == 0)
-            break;
-    if (strcmp(t->token, "*seed") != 0)
-        return 0;
-    t->seed = brc_pool_alloc(t->ctx, &t->pool, t->n_cells, sizeof *t->seed);
-    if (!t->seed)
+    BRC_TRY(find(t, heading, is_from_start));
+    return count(t, n);
+}
+
+/* The numbered entries of a part. Asks first whether the arrays that they fill are there, so that
+ * what makes them need not. */
+static int read_entries(struct brc_neper_file *t, size_t n,
+                        int (*read)(struct brc_neper_file *t, size_t i))
+{
+    if (t->pool.is_failed)
         return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < t->n_cells; i++) {
+    for (size_t i = 0; i < n; i++) {
         BRC_TRY(number(t, i));
-        for (int k = 0; k < 4; k++)
-            BRC_TRY(real(t, &t->seed[i][k]));
+        BRC_TRY(read(t, i));
     }
     return 0;
 }
 
-static int read_vertices(struct brc_neper_file *t)
+static int read_seed(struct brc_neper_file *t, size_t i)
 {
-    BRC_TRY(find(t, "**vertex", true));
-    BRC_TRY(count(t, &t->n_vertices));
-    t->vertex = brc_pool_alloc(t->ctx, &t->pool, t->n_vertices, sizeof *t->vertex);
-    if (!t->vertex)
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < t->n_vertices; i++) {
-        BRC_TRY(number(t, i));
-        for (int k = 0; k < 3; k++) {
-            BRC_TRY(real(t, &t->vertex[i][k]));
-            int digits = significant_digits(t->token);
-            t->digits = digits > t->digits ? digits : t->digits;
-        }
-        BRC_TRY(skip(t, 1));
-    }
+    for (int k = 0; k < 4; k++)
+        BRC_TRY(real(t, &t->seed[i][k]));
     return 0;
+}
+
+/* Seeds may be missing, and are read all zero then: a tessellation is its cells, and seeds serve
+ * only to measure them from, or as the centres of spheres. */
+static int read_cells(struct brc_neper_file *t)
+{
+    BRC_TRY(begin(t, "**cell", true, &t->n_cells));
+    t->seed = brc_pool_alloc(t->ctx, &t->pool, t->n_cells, sizeof *t->seed);
+    while (!t->has_seeds && next(t) && strncmp(t->token, "**", 2) != 0)
+        t->has_seeds = strcmp(t->token, "*seed") == 0;
+    return read_entries(t, t->has_seeds ? t->n_cells : 0, read_seed);
+}
+
+static int read_vertex(struct brc_neper_file *t, size_t i)
+{
+    for (int k = 0; k < 3; k++) {
+        BRC_TRY(real(t, &t->vertex[i][k]));
+        int digits = significant_digits(t->token);
+        t->digits = digits > t->digits ? digits : t->digits;
+    }
+    return skip(t, 1); /* state */
 }
 
 static int read_face(struct brc_neper_file *t, size_t i)
 {
     size_t n;
-    BRC_TRY(number(t, i));
     BRC_TRY(count(t, &n));
     if (n < 3 || t->n_loop + n > t->size / 2)
         return fail(t, "a face has three vertices at least");
@@ -199,71 +208,19 @@ static int read_face(struct brc_neper_file *t, size_t i)
     return skip(t, 4 + 5); /* equation, state and point */
 }
 
-static int read_faces(struct brc_neper_file *t)
-{
-    BRC_TRY(find(t, "**face", true));
-    BRC_TRY(count(t, &t->n_faces));
-    t->face = brc_pool_alloc(t->ctx, &t->pool, t->n_faces, sizeof *t->face);
-    t->loop = brc_pool_alloc(t->ctx, &t->pool, t->size / 2 + 1, sizeof *t->loop);
-    if (!t->face || !t->loop)
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < t->n_faces; i++)
-        BRC_TRY(read_face(t, i));
-    return 0;
-}
-
 /* A face that two polyhedra claim is inner; the sign of the claim would tell its direction, which
  * the reader finds from the vertices. */
-static int read_polyhedra(struct brc_neper_file *t)
+static int read_polyhedron(struct brc_neper_file *t, size_t i)
 {
-    size_t n;
-    BRC_TRY(find(t, "**polyhedron", true));
-    BRC_TRY(count(t, &n));
-    if (n != t->n_cells)
-        return fail(t, "there must be a polyhedron for each cell");
-    for (size_t i = 0; i < n; i++) {
-        long n_faces;
-        BRC_TRY(number(t, i));
-        BRC_TRY(whole(t, 0, (long)t->n_faces, &n_faces));
-        for (long k = 0; k < n_faces; k++) {
-            long f;
-            BRC_TRY(whole(t, -(long)t->n_faces, (long)t->n_faces, &f));
-            struct brc_neper_face *face = f == 0 ? NULL : &t->face[labs(f) - 1];
-            if (!face || face->cell[1] >= 0 || face->cell[0] == (int32_t)i)
-                return fail(t, "a face belongs to one polyhedron, or to two");
-            face->cell[face->cell[0] >= 0] = (int32_t)i;
-        }
+    long n_faces, f;
+    BRC_TRY(whole(t, 0, (long)t->n_faces, &n_faces));
+    for (long k = 0; k < n_faces; k++) {
+        BRC_TRY(whole(t, -(long)t->n_faces, (long)t->n_faces, &f));
+        struct brc_neper_face *face = f == 0 ? NULL : &t->face[labs(f) - 1];
+        if (!face || face->cell[1] >= 0 || face->cell[0] == (int32_t)i)
+            return fail(t, "a face belongs to one polyhedron, or to two");
+        face->cell[face->cell[0] >= 0] = (int32_t)i;
     }
-    return 0;
-}
-
-/* Leaves cells without faces out: such a cell has been hidden by others. It is told and not
- * refused, as the other cells fill the domain. */
-static int drop_empty_cells(struct brc_neper_file *t)
-{
-    size_t n = 0, n_empty = 0, first = 0;
-    int32_t *number_of = brc_pool_alloc(t->ctx, &t->pool, t->n_cells, sizeof *number_of);
-    if (!number_of)
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < t->n_faces; i++)
-        for (int k = 0; k < 2 && t->face[i].cell[k] >= 0; k++)
-            number_of[t->face[i].cell[k]] = 1;
-    for (size_t i = 0; i < t->n_cells; i++) {
-        if (number_of[i] == 0) {
-            first = n_empty++ == 0 ? i + 1 : first;
-            continue;
-        }
-        if (t->seed)
-            memcpy(t->seed[n], t->seed[i], sizeof *t->seed);
-        number_of[i] = (int32_t)n++;
-    }
-    for (size_t i = 0; i < t->n_faces; i++)
-        for (int k = 0; k < 2 && t->face[i].cell[k] >= 0; k++)
-            t->face[i].cell[k] = number_of[t->face[i].cell[k]];
-    t->n_cells = n;
-    if (n_empty > 0)
-        brc_log(t->ctx, "%s: %zu of the cells have no faces and are left out, first cell %zu",
-                t->path, n_empty, first);
     return 0;
 }
 
@@ -278,30 +235,19 @@ static int read_domain_type(struct brc_neper_file *t, size_t i)
     return skip_list(t);
 }
 
-/* Which faces lie on which face of the domain. */
-static int read_domain(struct brc_neper_file *t)
+/* Which faces lie on a face of the domain. */
+static int read_domain_face(struct brc_neper_file *t, size_t i)
 {
     size_t n;
-    BRC_TRY(find(t, "**domain", true));
-    BRC_TRY(find(t, "*face", false));
-    BRC_TRY(count(t, &t->n_domain));
-    if (t->n_domain > MAX_DOMAIN_FACES)
-        return fail(t, "too many faces of the domain");
-    t->is_curved = brc_pool_alloc(t->ctx, &t->pool, t->n_domain, 1);
-    if (!t->is_curved)
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < t->n_domain; i++) {
-        BRC_TRY(number(t, i));
-        BRC_TRY(skip_list(t)); /* its vertices */
-        BRC_TRY(skip_list(t)); /* its edges */
-        BRC_TRY(read_domain_type(t, i));
-        BRC_TRY(skip(t, 1)); /* label */
-        BRC_TRY(count(t, &n));
-        for (size_t k = 0; k < n; k++) {
-            long f;
-            BRC_TRY(whole(t, 1, (long)t->n_faces, &f));
-            t->face[f - 1].domain = (int32_t)i;
-        }
+    BRC_TRY(skip_list(t)); /* its vertices */
+    BRC_TRY(skip_list(t)); /* its edges */
+    BRC_TRY(read_domain_type(t, i));
+    BRC_TRY(skip(t, 1)); /* label */
+    BRC_TRY(count(t, &n));
+    for (size_t k = 0; k < n; k++) {
+        long f;
+        BRC_TRY(whole(t, 1, (long)t->n_faces, &f));
+        t->face[f - 1].domain = (int32_t)i;
     }
     return 0;
 }
@@ -319,14 +265,28 @@ static int check_faces(const struct brc_neper_file *t)
     return 0;
 }
 
+/* Parts that name entries of others by number come after those, so that each number has a range. */
 int brc_neper_parse(struct brc_neper_file *t)
 {
+    size_t n;
     BRC_TRY(read_kind(t));
     BRC_TRY(read_cells(t));
-    BRC_TRY(read_vertices(t));
-    BRC_TRY(read_faces(t));
-    BRC_TRY(read_polyhedra(t));
-    BRC_TRY(drop_empty_cells(t));
-    BRC_TRY(read_domain(t));
+    BRC_TRY(begin(t, "**vertex", true, &t->n_vertices));
+    t->vertex = brc_pool_alloc(t->ctx, &t->pool, t->n_vertices, sizeof *t->vertex);
+    BRC_TRY(read_entries(t, t->n_vertices, read_vertex));
+    BRC_TRY(begin(t, "**face", true, &t->n_faces));
+    t->face = brc_pool_alloc(t->ctx, &t->pool, t->n_faces, sizeof *t->face);
+    t->loop = brc_pool_alloc(t->ctx, &t->pool, t->size / 2 + 1, sizeof *t->loop);
+    BRC_TRY(read_entries(t, t->n_faces, read_face));
+    BRC_TRY(begin(t, "**polyhedron", true, &n));
+    if (n != t->n_cells)
+        return fail(t, "there must be a polyhedron for each cell");
+    BRC_TRY(read_entries(t, n, read_polyhedron));
+    BRC_TRY(find(t, "**domain", true));
+    BRC_TRY(begin(t, "*face", false, &t->n_domain));
+    if (t->n_domain > MAX_DOMAIN_FACES)
+        return fail(t, "too many faces of the domain");
+    t->is_curved = brc_pool_alloc(t->ctx, &t->pool, t->n_domain, 1);
+    BRC_TRY(read_entries(t, t->n_domain, read_domain_face));
     return check_faces(t);
 }

@@ -22,8 +22,7 @@ static const double plane_digits = 4e-9, digits_margin = 8;
 
 struct tess {
     struct brc_neper_file file;
-    double (*centre)[3];      /* of the cells, in the order of the file */
-    size_t *order;            /* cell of the file that comes i-th */
+    double (*centre)[3];      /* of the cells */
     double extent, origin[3]; /* places are relative to origin, 0 where the body is near it */
     double precision;         /* of the vertices: the last digit of the largest */
 };
@@ -34,7 +33,7 @@ static void come_near(struct tess *t, const double middle[3])
     brc_convex_origin(middle, t->extent / 2, t->origin);
     for (size_t i = 0; i < t->file.n_vertices; i++)
         brc_sub(t->file.vertex[i], t->file.vertex[i], t->origin);
-    for (size_t i = 0; t->file.seed && i < t->file.n_cells; i++)
+    for (size_t i = 0; i < t->file.n_cells; i++)
         brc_sub(t->file.seed[i], t->file.seed[i], t->origin);
 }
 
@@ -43,7 +42,7 @@ static void come_near(struct tess *t, const double middle[3])
 static void scale(struct tess *t, double metres)
 {
     double low[3], high[3], largest = 0;
-    for (size_t i = 0; t->file.seed && i < t->file.n_cells; i++)
+    for (size_t i = 0; i < t->file.n_cells; i++)
         for (int k = 0; k < 4; k++)
             t->file.seed[i][k] *= metres;
     for (size_t i = 0; i < t->file.n_vertices; i++)
@@ -77,28 +76,69 @@ static void measure_face(const struct tess *t, const struct brc_neper_face *f, d
     }
 }
 
-/* Means of the faces' middles, which lie inside of convex cells, and the cells' order in space.
- * They tell inside from outside; true centroids are measured when the cells are known to be closed.
+/* Means of the faces' middles, which lie inside of convex cells: they tell inside from outside;
+ * true centroids are measured when the cells are known to be closed. Cells without faces are left
+ * out: such a cell has been hidden by others. It is told and not refused, as the others fill the
+ * domain. n_faces and kept are work of a length a cell; kept lists those that stay, whose number it
+ * returns.
  */
-static int place_cells(struct tess *t)
+static size_t place_cells(struct tess *t, int32_t *n_faces, size_t *kept)
 {
-    size_t n_cells = t->file.n_cells;
-    int32_t *n = brc_pool_alloc(t->file.ctx, &t->file.pool, n_cells, sizeof *n);
-    t->centre = brc_pool_alloc(t->file.ctx, &t->file.pool, n_cells, sizeof *t->centre);
-    t->order = brc_pool_alloc(t->file.ctx, &t->file.pool, n_cells, sizeof *t->order);
-    if (t->file.pool.is_failed)
-        return BRC_ERR_MEMORY;
+    size_t n = 0, first = 0; /* empty one, from 1 */
     for (size_t i = 0; i < t->file.n_faces; i++) {
         double area[3], middle[3];
+        const int32_t *cell = t->file.face[i].cell;
         measure_face(t, &t->file.face[i], area, middle);
-        for (int k = 0; k < 2 && t->file.face[i].cell[k] >= 0; k++) {
-            brc_axpy(t->centre[t->file.face[i].cell[k]], 1, middle);
-            n[t->file.face[i].cell[k]]++;
+        for (int k = 0; k < 2 && cell[k] >= 0; k++) {
+            brc_axpy(t->centre[cell[k]], 1, middle);
+            n_faces[cell[k]]++;
         }
     }
-    for (size_t i = 0; i < n_cells; i++)
-        brc_scale(t->centre[i], t->centre[i], 1.0 / n[i]);
-    return brc_hilbert_order(t->file.ctx, t->centre, n_cells, t->order);
+    for (size_t i = 0; i < t->file.n_cells; i++) {
+        if (n_faces[i] == 0) {
+            first = n == i ? i + 1 : first;
+            continue;
+        }
+        brc_scale(t->centre[n], t->centre[i], 1.0 / n_faces[i]);
+        kept[n++] = i;
+    }
+    if (first > 0)
+        brc_log(t->file.ctx, "%s: %zu of the cells have no faces and are left out, first cell %zu",
+                t->file.path, t->file.n_cells - n, first);
+    return n;
+}
+
+/* Numbers the cells along a space-filling curve, as those of any specimen are, at once and for all
+ * that follows: seeds, centres and the cells of faces, whose low one comes first from here on. */
+static int number_cells(struct tess *t)
+{
+    struct brc_neper_file *f = &t->file;
+    size_t n = f->n_cells, *kept = brc_pool_alloc(f->ctx, &f->pool, n, sizeof *kept),
+           *order = brc_pool_alloc(f->ctx, &f->pool, n, sizeof *order);
+    int32_t *number_of = brc_pool_alloc(f->ctx, &f->pool, n, sizeof *number_of);
+    double(*centre)[3] = brc_pool_alloc(f->ctx, &f->pool, n, sizeof *centre);
+    double(*seed)[4] = brc_pool_alloc(f->ctx, &f->pool, n, sizeof *seed);
+    t->centre = brc_pool_alloc(f->ctx, &f->pool, n, sizeof *t->centre);
+    if (f->pool.is_failed)
+        return BRC_ERR_MEMORY;
+    f->n_cells = place_cells(t, number_of, kept);
+    BRC_TRY(brc_hilbert_order(f->ctx, t->centre, f->n_cells, order));
+    for (size_t i = 0; i < f->n_cells; i++) {
+        number_of[kept[order[i]]] = (int32_t)i;
+        brc_copy(centre[i], t->centre[order[i]]);
+        memcpy(seed[i], f->seed[kept[order[i]]], sizeof *seed);
+        if (!f->has_seeds)
+            brc_copy(seed[i], centre[i]);
+    }
+    t->centre = centre;
+    f->seed = seed;
+    for (size_t i = 0; i < f->n_faces; i++) {
+        int32_t *cell = f->face[i].cell, own = number_of[cell[0]];
+        int32_t other = cell[1] < 0 ? INT32_MAX : number_of[cell[1]];
+        cell[0] = own < other ? own : other;
+        cell[1] = cell[1] < 0 ? -1 : own < other ? other : own;
+    }
+    return 0;
 }
 
 /* A face of the domain that lies in the plane of another one is that one: Neper's may have several
@@ -210,7 +250,7 @@ static int check_flat(const struct tess *t, size_t i, const double n[3], const d
 
 /* A face as a facet: out of its lower cell, the loop turned to fit. The file's signs are not needed
  * for that, since the cell's middle tells which side is out. */
-static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const int32_t *number_of,
+static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i,
                      const struct brc_convex *domain)
 {
     const struct brc_neper_face *f = &t->file.face[i];
@@ -219,12 +259,7 @@ static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const
     measure_face(t, f, n, middle);
     brc_normalise(n, n);
     BRC_TRY(check_flat(t, i, n, middle, domain));
-    int32_t low = f->cell[0], high = f->cell[1];
-    if (high >= 0 && number_of[high] < number_of[low]) {
-        low = f->cell[1];
-        high = f->cell[0];
-    }
-    brc_sub(out, middle, t->centre[low]);
+    brc_sub(out, middle, t->centre[f->cell[0]]);
     if (brc_dot(n, out) < 0) {
         brc_scale(n, n, -1);
         for (int32_t k = 0; k < f->n / 2; k++) {
@@ -233,8 +268,8 @@ static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const
             loop[f->n - 1 - k] = v;
         }
     }
-    struct brc_cell_complex_facet facet = {{number_of[low], high < 0 ? -1 : number_of[high]},
-                                           high < 0 ? f->domain : BRC_FACE_INNER,
+    struct brc_cell_complex_facet facet = {{f->cell[0], f->cell[1]},
+                                           f->cell[1] < 0 ? f->domain : BRC_FACE_INNER,
                                            f->n,
                                            0,
                                            {n[0], n[1], n[2]}};
@@ -243,16 +278,11 @@ static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i, const
 
 static int fill_complex(struct tess *t, struct brc_cell_complex *c, const struct brc_convex *domain)
 {
-    int32_t *number_of =
-        brc_pool_alloc(t->file.ctx, &t->file.pool, t->file.n_cells, sizeof *number_of);
-    if (!number_of)
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < t->file.n_cells; i++)
-        number_of[t->order[i]] = (int32_t)i;
+    c->n_cells = t->file.n_cells;
     for (size_t v = 0; v < t->file.n_vertices; v++)
         BRC_TRY(brc_cell_complex_add_vertex(t->file.ctx, c, t->file.vertex[v]));
     for (size_t i = 0; i < t->file.n_faces; i++)
-        BRC_TRY(add_facet(t, c, i, number_of, domain));
+        BRC_TRY(add_facet(t, c, i, domain));
     BRC_TRY(brc_cell_complex_merge_vertices(t->file.ctx, c, merge_length * t->extent));
     return brc_cell_complex_snap_to_planes(t->file.ctx, c, domain);
 }
@@ -280,14 +310,13 @@ static void keep_seeds_inside(struct tess *t)
 static int make_facets(struct tess *t, struct brc_cell_complex *c, bool has_spheres, double volume,
                        struct brc_facets *out)
 {
-    if (t->file.seed && !has_spheres)
+    if (!has_spheres)
         keep_seeds_inside(t);
     out->precision = t->precision;
     BRC_TRY(brc_facets_seeds(t->file.ctx, out, t->file.n_cells));
     for (size_t i = 0; i < t->file.n_cells; i++) {
-        size_t own = t->order[i];
-        brc_copy(out->seed[i], t->file.seed ? t->file.seed[own] : t->centre[own]);
-        out->radius[i] = t->file.seed && has_spheres ? t->file.seed[own][3] : 0;
+        brc_copy(out->seed[i], t->file.seed[i]);
+        out->radius[i] = has_spheres ? t->file.seed[i][3] : 0;
     }
     BRC_TRY(brc_cell_complex_finish(t->file.ctx, c, out));
     return brc_facets_verify(t->file.ctx, out, volume, t->origin);
@@ -302,10 +331,9 @@ static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_
     BRC_TRY(brc_input_read(t->file.ctx, &in, &t->file.text, &t->file.size));
     BRC_TRY(brc_neper_parse(&t->file));
     scale(t, metres);
-    BRC_TRY(place_cells(t));
+    BRC_TRY(number_cells(t));
     BRC_TRY(make_domain(t, domain));
     brc_convex_mass(domain, &volume, centroid, inertia);
-    c->n_cells = t->file.n_cells;
     BRC_TRY(fill_complex(t, c, domain));
     BRC_TRY(make_facets(t, c, has_spheres, volume, out));
     if (brc_norm(t->origin) > 0) {
