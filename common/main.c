@@ -28,12 +28,13 @@ enum { MAX_OVERRIDES = 256 };
 /* What a command was asked for. Members that options fill are found by their offsets. */
 struct options {
     const char *operand; /* CASE, or the section of `params`, or a file */
-    const char *model, *dir, *table, *format;
-    const char *observable, *axes;
-    int seeds, refine, jobs; /* 0: not given */
+    const char *out, *table, *format;
+    /* The ladder's own, and what a run is told: its members are those of runs and comparisons, too,
+     * so that an option of several commands has one place. */
+    struct brc_converge_options ladder;
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
-    bool is_resumed, is_forced, is_quiet, is_help;
+    bool is_quiet, is_help;
     const char *program;
     /* The command and its words without flags, for the command that goes on: moved to the front of
      * argv as they are read. */
@@ -70,38 +71,34 @@ static int start_single(struct brc_context *ctx)
     return 0;
 }
 
-static const char *model_of(const struct options *o, const struct brc_case *run_case)
+static const char *model_of(const struct options *o)
 {
-    return o->model ? o->model : run_case->file.head.model;
+    return o->ladder.model ? o->ladder.model : o->ladder.run.run_case->file.head.model;
 }
 
 /* The folder is looked at before the specimen is made, and once more by the run itself under its
  * lock: minutes lie between the two. */
-static int run_model(struct brc_context *ctx, const struct options *o,
-                     const struct brc_case *run_case, const char *dir)
+static int run_model(struct brc_context *ctx, const struct options *o)
 {
     struct brc_specimen specimen = {0};
     struct brc_progress progress;
     struct brc_summary summary;
     const struct brc_summary *row = &summary;
-    struct brc_run_options options = {.run_case = run_case,
-                                      .specimen = &specimen,
-                                      .dir = dir,
-                                      .is_resumed = o->is_resumed,
-                                      .is_forced = o->is_forced,
-                                      .progress = &progress};
-    const char *name = model_of(o, run_case);
+    struct brc_run_options run = o->ladder.run;
+    const char *name = model_of(o);
     if (!*name)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "%s names no model; add 'model: NAME' or use --model NAME",
                  o->operand);
-    BRC_TRY(brc_case_model(ctx, name, &options.model));
-    BRC_TRY(brc_run_check_folder(ctx, dir, run_case, o->is_resumed, o->is_forced));
-    int code = make_specimen(ctx, run_case, &specimen);
+    BRC_TRY(brc_case_model(ctx, name, &run.model));
+    BRC_TRY(brc_run_check_folder(ctx, &run));
+    run.specimen = &specimen;
+    run.progress = &progress;
+    int code = make_specimen(ctx, run.run_case, &specimen);
     if (code == 0)
         code = start_single(ctx);
     if (code == 0) {
         brc_progress_begin(&progress, stderr, &name, 1, o->is_quiet);
-        code = brc_run(ctx, &options, &summary);
+        code = brc_run(ctx, &run, &summary);
         brc_progress_end(&progress);
     }
     if (code == 0 || code == BRC_ERR_ENERGY)
@@ -110,42 +107,28 @@ static int run_model(struct brc_context *ctx, const struct options *o,
     return code;
 }
 
-static int compare_case(struct brc_context *ctx, const struct options *o,
-                        const struct brc_case *run_case, const char *dir)
+/* MPI is not started here, as the models run in forked processes, which must not have its threads
+ * and connections. */
+static int compare_models(struct brc_context *ctx, const struct options *o)
 {
     struct brc_specimen specimen = {0};
-    const struct brc_compare_options options = {.run_case = run_case,
-                                                .specimen = &specimen,
-                                                .dir = dir,
-                                                .is_resumed = o->is_resumed,
-                                                .is_forced = o->is_forced,
-                                                .is_quiet = o->is_quiet};
-    int code = make_specimen(ctx, run_case, &specimen);
+    struct brc_run_options run = o->ladder.run;
+    run.specimen = &specimen;
+    int code = make_specimen(ctx, run.run_case, &specimen);
     if (code == 0)
-        code = brc_compare(ctx, &options);
+        code = brc_compare(ctx, &run);
     brc_specimen_free(&specimen);
     return code;
 }
 
-static int converge_case(struct brc_context *ctx, const struct options *o,
-                         const struct brc_case *run_case, const char *dir)
+static int run_ladder(struct brc_context *ctx, const struct options *o)
 {
-    const struct brc_converge_options options = {.run_case = run_case,
-                                                 .model = o->model,
-                                                 .dir = dir,
-                                                 .observable =
-                                                     o->observable ? o->observable : "strength",
-                                                 .axes = o->axes ? o->axes : "",
-                                                 .seeds = o->seeds ? o->seeds : 4,
-                                                 .refine = o->refine ? o->refine : 8,
-                                                 .jobs = o->jobs ? o->jobs : 1,
-                                                 .is_resumed = o->is_resumed,
-                                                 .is_forced = o->is_forced};
-    if (options.refine < 2 || (options.refine & (options.refine - 1)) != 0)
+    int refine = o->ladder.refine;
+    if (refine < 2 || (refine & (refine - 1)) != 0)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--refine takes a power of 2 from 2 to %d, not %d",
-                 BRC_CONVERGE_MAX_REFINE, options.refine);
+                 BRC_CONVERGE_MAX_REFINE, refine);
     brc_signals_hold(); /* at once: a ladder keeps each run that is finished */
-    return brc_converge(ctx, &options);
+    return brc_converge(ctx, &o->ladder);
 }
 
 static int act_info(struct brc_context *ctx, const struct options *o)
@@ -160,7 +143,7 @@ static int act_export(struct brc_context *ctx, const struct options *o)
     const char *what = o->format ? o->format : o->table;
     if (!what || (o->format && o->table))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "export needs either --table NAME or --format stl or tess");
-    const struct brc_export_options options = {o->operand, o->dir, o->is_forced};
+    const struct brc_export_options options = {o->operand, o->out, o->ladder.run.is_forced};
     return o->table ? brc_export_table(ctx, &options, o->table)
                     : brc_export_format(ctx, &options, o->format);
 }
@@ -223,30 +206,34 @@ static const struct option {
     int largest; /* of a whole number; 0: the value is a text */
     const char *commands, *help;
 } option_table[] = {
-    {"--model", "NAME", AT(model), 0, "R", "contact model; default: `model` of the case"},
-    {"--model", "NAME", AT(model), 0, "V", "this model alone; default: those that compare runs"},
-    {"-o", "DIR", AT(dir), 0, "V", "folder of results; default: results/<case>"},
-    {"--observable", "NAME", AT(observable), 0, "V", "the result to look at; default: strength"},
-    {"--axes", "LIST", AT(axes), 0, "V",
+    {"--model", "NAME", AT(ladder.model), 0, "R", "contact model; default: `model` of the case"},
+    {"--model", "NAME", AT(ladder.model), 0, "V",
+     "this model alone; default: those that compare runs"},
+    {"-o", "DIR", AT(out), 0, "V", "folder of results; default: results/<case>"},
+    {"--observable", "NAME", AT(ladder.observable), 0, "V",
+     "the result to look at; default: strength"},
+    {"--axes", "LIST", AT(ladder.axes), 0, "V",
      "of step, loading, rate, grains, points, features, ...; default: all"},
-    {"--seeds", "N", AT(seeds), BRC_CONVERGE_MAX_SEEDS, "V",
+    {"--seeds", "N", AT(ladder.seeds), BRC_CONVERGE_MAX_SEEDS, "V",
      "specimens, seeds from that of the case on; default: 4"},
-    {"--refine", "N", AT(refine), BRC_CONVERGE_MAX_REFINE, "V",
+    {"--refine", "N", AT(ladder.refine), BRC_CONVERGE_MAX_REFINE, "V",
      "loading of the reference finer by this power of 2, half the step; default: 8"},
-    {"--jobs", "N", AT(jobs), BRC_PROGRESS_MAX_RUNS, "V",
+    {"--jobs", "N", AT(ladder.jobs), BRC_PROGRESS_MAX_RUNS, "V",
      "runs at a time; default: 1, for times that nothing disturbs"},
-    {"-o", "DIR", AT(dir), 0, "RC",
+    {"-o", "DIR", AT(out), 0, "RC",
      "folder of results; default: results/<case>/<model>, results/<case>"},
-    {"-o", "FILE", AT(dir), 0, "X", "what to write; default: on standard output"},
+    {"-o", "FILE", AT(out), 0, "X", "what to write; default: on standard output"},
     {"--table", "NAME", AT(table), 0, "X", "CSV of this table: curve, events, bodies, pairs, ..."},
     {"--format", "FORMAT", AT(format), 0, "X",
      "stl: a solid a fragment; tess: the specimen for Neper"},
     {"--set", "KEY=VALUE", AT(overrides), 0, "RCV",
      "replace a value of the case, as vgcm.e_bar=\"50 GPa\"; repeatable"},
-    {"--resume", NULL, AT(is_resumed), 0, "RC", "go on from the saved state, to the same bits"},
-    {"--resume", NULL, AT(is_resumed), 0, "V", "keep finished runs, go on with the others"},
-    {"--force", NULL, AT(is_forced), 0, "RCV", "replace results that are there"},
-    {"--force", NULL, AT(is_forced), 0, "X", "replace the file that is there"},
+    {"--resume", NULL, AT(ladder.run.is_resumed), 0, "RC",
+     "go on from the saved state, to the same bits"},
+    {"--resume", NULL, AT(ladder.run.is_resumed), 0, "V",
+     "keep finished runs, go on with the others"},
+    {"--force", NULL, AT(ladder.run.is_forced), 0, "RCV", "replace results that are there"},
+    {"--force", NULL, AT(ladder.run.is_forced), 0, "X", "replace the file that is there"},
     {"--quiet", NULL, AT(is_quiet), 0, "RCV", "no progress, no log lines"},
     {"--help", NULL, AT(is_help), 0, "RCVPMIXT", "this text"},
 };
@@ -256,9 +243,7 @@ struct command {
     const char *name;
     char letter; /* in option.commands */
     const char *operand, *does, *example, *more;
-    /* One of the two: what is done with the case that the operand names, or without one. */
-    int (*on_case)(struct brc_context *ctx, const struct options *o,
-                   const struct brc_case *run_case, const char *dir);
+    bool has_case; /* the operand is one, and is read before */
     int (*act)(struct brc_context *ctx, const struct options *o);
 };
 
@@ -267,31 +252,31 @@ static const struct command commands[] = {
      "breccia run cases/demo_tension.yaml --model vgcm -o results/first --set specimen.seed=2",
      "Writes summary.json, curve.csv, events.csv, state.h5, case.yaml, log and pictures.\n"
      "Ctrl-C saves the state and ends with status 7; the same command with --resume goes on.\n",
-     run_model, NULL},
+     true, run_model},
     {"compare", 'C', "CASE", "run all models of a case side by side and print a table",
      "breccia compare cases/demo_tension.yaml -o results/pair",
      "Each model's results go to DIR/<model>; the table to DIR/compare.txt, the pictures to DIR.\n",
-     compare_case, NULL},
+     true, compare_models},
     {"converge", 'V', "CASE", "what accuracy costs: ladders of settings against a finer reference",
      "breccia converge cases/demo_tension.yaml --observable E --axes step,loading --seeds 8",
      "Runs the case with one setting changed at a time, on several specimens, with all models;\n"
      "tells error, its uncertainty and cost of each, and the cheapest within 1 % and 5 %. Writes\n"
      "converge.txt, converge.csv, converge_runs.csv and converge.png; finished runs are never "
      "lost.\n",
-     converge_case, NULL},
+     true, run_ladder},
     {"info", 'I', "FILE", "tell what a saved state or a frame holds",
      "breccia info results/pair/vgcm/state.h5",
-     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n", NULL,
+     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n", false,
      act_info},
     {"export", 'X', "FILE", "write tables, fragments or the specimen for other programs",
      "breccia export results/pair/vgcm/state.h5 --format stl -o fragments.stl",
-     "FILE is a saved state, or for --format tess a case file, too.\n", NULL, act_export},
+     "FILE is a saved state, or for --format tess a case file, too.\n", false, act_export},
     {"params", 'P', "[SECTION]",
      "list the keys of a section of the case file: a model, specimen, test, run, output",
-     "breccia params vgcm", "Without a section: all of them.\n", NULL, act_params},
-    {"models", 'M', "", "list the contact models", "breccia models", "", NULL, act_models},
+     "breccia params vgcm", "Without a section: all of them.\n", false, act_params},
+    {"models", 'M', "", "list the contact models", "breccia models", "", false, act_models},
     {"tests", 'T', "", "list the tests: keys of `test:` that each uses, and what it measures",
-     "breccia tests", "", NULL, act_tests},
+     "breccia tests", "", false, act_tests},
 };
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -435,18 +420,20 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
 /* Reads the case for a command, and tells in its message where in the case a failure comes from.
  * Results go where the user says, else by the names of the case and, for a run, of its model. A
  * path that is cut here is refused later, as too long for any file in it. */
-static int act_on_case(struct brc_context *ctx, const struct options *o, const struct command *c)
+static int act_on_case(struct brc_context *ctx, struct options *o, const struct command *c)
 {
     char dir[BRC_PATH_SIZE];
     struct brc_case run_case;
     int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
+    o->ladder.run.run_case = &run_case;
+    o->ladder.run.dir = dir;
     if (code == 0) {
-        const char *model = c->on_case == run_model ? model_of(o, &run_case) : "";
-        if (o->dir)
-            snprintf(dir, sizeof dir, "%s", o->dir);
+        const char *model = c->act == run_model ? model_of(o) : "";
+        if (o->out)
+            snprintf(dir, sizeof dir, "%s", o->out);
         else
             snprintf(dir, sizeof dir, "results/%s%s%s", run_case.name, *model ? "/" : "", model);
-        code = c->on_case(ctx, o, &run_case, dir);
+        code = c->act(ctx, o);
         brc_case_locate(ctx, &run_case);
     }
     if (code == 0 || code == BRC_ERR_ENERGY) /* wrong ones are kept, too: the status says so */
@@ -471,9 +458,9 @@ static int act(struct brc_context *ctx, const struct command *c, char **words, s
     if (needs_file && !o->operand)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a %s: %s", c->name,
                  strcmp(c->operand, "CASE") == 0 ? "case file" : "file", c->example);
-    if (o->is_resumed && o->is_forced)
+    if (o->ladder.run.is_resumed && o->ladder.run.is_forced)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--resume and --force exclude each other");
-    return c->on_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
+    return c->has_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
 }
 
 /* Without a word the help goes to standard error, with the status of a bad command line: a script
@@ -516,9 +503,9 @@ static void print_resume(FILE *out, int code, const struct options *o)
     brc_console_word(out, o->program);
     for (int i = 0; i < o->n_kept; i++)
         brc_console_word(out, o->kept[i]);
-    if (is_saved || o->is_resumed)
+    if (is_saved || o->ladder.run.is_resumed)
         brc_console_word(out, "--resume");
-    else if (o->is_forced)
+    else if (o->ladder.run.is_forced)
         brc_console_word(out, "--force");
 }
 
@@ -527,7 +514,9 @@ static void print_resume(FILE *out, int code, const struct options *o)
 int main(int argc, char **argv)
 {
     struct brc_context ctx = BRC_CONTEXT_INIT;
-    struct options o = {.program = argc > 0 ? argv[0] : "breccia"};
+    struct options o = {
+        .program = argc > 0 ? argv[0] : "breccia",
+        .ladder = {.observable = "strength", .axes = "", .seeds = 4, .refine = 8, .jobs = 1}};
     int code = brc_console_open(&ctx);
     signal(SIGXFSZ, SIG_IGN); /* a file over the allowed size is a failed write like any other */
     if (code == 0)

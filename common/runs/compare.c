@@ -15,10 +15,10 @@ enum { MAX_RUNS = BRC_PROGRESS_MAX_RUNS };
 
 struct compare {
     struct brc_context *ctx;
-    const struct brc_compare_options *options;
+    const struct brc_run_options *options;
     int n;
     /* by model */
-    const struct brc_model *model[MAX_RUNS];
+    struct brc_run_options run[MAX_RUNS];
     const char *name[MAX_RUNS];
     char dir[MAX_RUNS][BRC_PATH_SIZE];
     struct brc_outcome outcome[MAX_RUNS];
@@ -26,13 +26,19 @@ struct compare {
 
 /* ---- the models ---------------------------------------------------------------------------- */
 
+/* A model that has not begun before starts, whatever the others do. */
 static int choose_models(struct compare *c)
 {
-    BRC_TRY(brc_case_models(c->ctx, c->options->run_case, c->model, MAX_RUNS, &c->n));
+    const struct brc_model *model[MAX_RUNS];
+    BRC_TRY(brc_case_models(c->ctx, c->options->run_case, model, MAX_RUNS, &c->n));
     for (int i = 0; i < c->n; i++) {
-        c->name[i] = c->model[i]->name;
+        c->name[i] = model[i]->name;
         c->outcome[i].code = BRC_ERR_NOT_BEGUN; /* stays so when a signal comes first */
         BRC_TRY(brc_folder_path(c->ctx, c->options->dir, c->name[i], c->dir[i]));
+        c->run[i] = *c->options;
+        c->run[i].model = model[i];
+        c->run[i].dir = c->dir[i];
+        c->run[i].is_resumed = c->options->is_resumed && brc_run_has_begun(c->dir[i]);
     }
     return 0;
 }
@@ -42,17 +48,11 @@ static int try_models(const struct compare *c)
 {
     for (int i = 0; i < c->n; i++) {
         struct brc_sim sim;
-        BRC_TRY(
-            brc_case_sim(c->ctx, c->options->run_case, c->model[i], c->options->specimen, &sim));
+        const struct brc_run_options *o = &c->run[i];
+        BRC_TRY(brc_case_sim(c->ctx, o->run_case, o->model, o->specimen, &sim));
         brc_sim_free(&sim);
     }
     return 0;
-}
-
-/* A model that has not begun before starts, whatever the others do. */
-static bool goes_on(const struct compare *c, int i)
-{
-    return c->options->is_resumed && brc_run_has_begun(c->dir[i]);
 }
 
 /* ---- the runs ------------------------------------------------------------------------------ */
@@ -67,13 +67,8 @@ static int run_model(struct brc_context *ctx, const void *user, int i,
                      struct brc_progress *progress, struct brc_summary *out)
 {
     const struct compare *c = user;
-    const struct brc_run_options options = {.run_case = c->options->run_case,
-                                            .model = c->model[i],
-                                            .specimen = c->options->specimen,
-                                            .dir = c->dir[i],
-                                            .is_resumed = goes_on(c, i),
-                                            .is_forced = c->options->is_forced,
-                                            .progress = progress};
+    struct brc_run_options options = c->run[i];
+    options.progress = progress;
     return brc_run(ctx, &options, out);
 }
 
@@ -97,7 +92,7 @@ static int run_all(struct compare *c)
                                     .name = name_of,
                                     .act = run_model,
                                     .end = keep_outcome};
-    brc_progress_begin(&progress, stderr, c->name, c->n, c->options->is_quiet);
+    brc_progress_begin(&progress, stderr, c->name, c->n, c->ctx->quiet);
     int code = brc_queue_run(c->ctx, &queue);
     brc_progress_end(&progress);
     return code;
@@ -113,7 +108,7 @@ static int fail_interrupted(struct compare *c)
 {
     char begun[BRC_NAMES_SIZE] = "";
     for (int i = 0; i < c->n; i++)
-        if (goes_on(c, i) || c->outcome[i].code != BRC_ERR_NOT_BEGUN)
+        if (c->run[i].is_resumed || c->outcome[i].code != BRC_ERR_NOT_BEGUN)
             brc_names_add(begun, sizeof begun, c->name[i]);
     if (!*begun)
         BRC_FAIL(c->ctx, BRC_ERR_NOT_BEGUN,
@@ -180,14 +175,13 @@ static int check_folders(const struct compare *c)
 {
     static const char *const names[] = {"compare.txt", "curves.gp", "curves.png", "cracks.gp",
                                         "cracks.png"};
-    const struct brc_compare_options *o = c->options;
-    bool has_begun = false;
+    bool may_replace = c->options->is_forced;
     for (int i = 0; i < c->n; i++) {
-        has_begun = has_begun || goes_on(c, i);
-        BRC_TRY(brc_run_check_folder(c->ctx, c->dir[i], o->run_case, goes_on(c, i), o->is_forced));
+        may_replace = may_replace || c->run[i].is_resumed;
+        BRC_TRY(brc_run_check_folder(c->ctx, &c->run[i]));
     }
-    return brc_run_check_own(c->ctx, o->dir, o->run_case, names, sizeof names / sizeof names[0],
-                             has_begun || o->is_forced);
+    return brc_run_check_own(c->ctx, c->options, names, sizeof names / sizeof names[0],
+                             may_replace);
 }
 
 /* All that can be refused comes before a folder is made. */
@@ -204,7 +198,7 @@ static int run(struct compare *c)
     return check_energy(c);
 }
 
-int brc_compare(struct brc_context *ctx, const struct brc_compare_options *options)
+int brc_compare(struct brc_context *ctx, const struct brc_run_options *options)
 {
     struct compare *c = brc_alloc(ctx, 1, sizeof *c);
     if (!c)

@@ -5,18 +5,11 @@
 
 #include "common/runs/run.h"
 
-struct brc_compare_options {
-    const struct brc_case *run_case;
-    const struct brc_specimen *specimen;
-    const char *dir;            /* the results of a model go to dir/<model> */
-    bool is_resumed, is_forced; /* resumed: models with a state go on, the others start */
-    bool is_quiet;
-};
-
-/* Runs all models of the case, as many at a time as there are processors; prints the table and
- * writes it to dir/compare.txt, and draws both models' curves and cracks. Start no MPI before: the
- * models run in forked processes. */
-int brc_compare(struct brc_context *ctx, const struct brc_compare_options *options);
+/* Runs all models of the case on the specimen, as many at a time as there are processors; prints
+ * the table and writes it to dir/compare.txt, and draws both models' curves and cracks. The results
+ * of a model go to dir/<model>; resumed: models with a state go on, the others start. Start no MPI
+ * before: the models run in forked processes. */
+int brc_compare(struct brc_context *ctx, const struct brc_run_options *options);
 
 /* A unit to show a value in. */
 struct brc_shown {

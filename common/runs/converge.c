@@ -16,7 +16,6 @@
 #include "common/runs/converge_plot.h"
 #include "common/runs/converge_record.h"
 #include "common/runs/converge_table.h"
-#include "common/runs/run.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -51,9 +50,9 @@ struct ladder {
  * and its scatter zero. */
 static int check_options(struct brc_context *ctx, const struct brc_converge_options *o)
 {
-    const struct brc_specimen_params *p = &o->run_case->specimen;
+    const struct brc_specimen_params *p = &o->run.run_case->specimen;
     bool is_given = p->grains == BRC_GRAINS_POINTS || p->grains == BRC_GRAINS_TESS;
-    const struct brc_rig_type *rig = brc_rigs_at(o->run_case->test.kind);
+    const struct brc_rig_type *rig = brc_rigs_at(o->run.run_case->test.kind);
     if (rig->n_quantities == 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT, "test.kind %s has no loading, so there is nothing to converge",
                  rig->name);
@@ -87,7 +86,7 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
                      struct brc_converge_model *m)
 {
     struct brc_sim sim;
-    BRC_TRY(brc_case_sim(l->ctx, l->study.options->run_case, m->model, specimen, &sim));
+    BRC_TRY(brc_case_sim(l->ctx, l->study.options->run.run_case, m->model, specimen, &sim));
     m->test = sim.rig.params;
     m->specimen = brc_facets_hash(&specimen->facets);
     l->study.n_results = brc_rigs_results(&sim, l->study.results);
@@ -105,7 +104,7 @@ static int choose_models(struct ladder *l)
     if (o->model)
         BRC_TRY(brc_case_model(l->ctx, o->model, &model[0]));
     else
-        BRC_TRY(brc_case_models(l->ctx, o->run_case, model, BRC_CONVERGE_MAX_MODELS,
+        BRC_TRY(brc_case_models(l->ctx, o->run.run_case, model, BRC_CONVERGE_MAX_MODELS,
                                 &l->study.n_models));
     for (int i = 0; i < l->study.n_models; i++)
         l->study.model[i].model = model[i];
@@ -116,7 +115,7 @@ static int try_models(struct ladder *l)
 {
     struct brc_specimen specimen = {0};
     struct brc_converge_study *study = &l->study;
-    int code = brc_specimen_create(l->ctx, &study->options->run_case->specimen, &specimen);
+    int code = brc_specimen_create(l->ctx, &study->options->run.run_case->specimen, &specimen);
     for (int i = 0; i < study->n_models && code == 0; i++)
         code = try_model(l, &specimen, &study->model[i]);
     l->n_grains = specimen.facets.n_cells;
@@ -130,9 +129,9 @@ static int check_folder(const struct ladder *l)
     static const char *const names[] = {"converge_runs.csv", "converge.txt", "converge.csv",
                                         "converge.gp",       "converge.png", "converge_unfinished"};
     const struct brc_converge_options *o = l->study.options;
-    bool may_go_on = o->is_resumed && brc_folder_has(o->dir, "converge_runs.csv");
-    return brc_run_check_own(l->ctx, o->dir, o->run_case, names, sizeof names / sizeof names[0],
-                             may_go_on || o->is_forced);
+    bool may_go_on = o->run.is_resumed && brc_folder_has(o->run.dir, "converge_runs.csv");
+    return brc_run_check_own(l->ctx, &o->run, names, sizeof names / sizeof names[0],
+                             may_go_on || o->run.is_forced);
 }
 
 /* Everything that can be refused, before a folder is touched: the cheap checks first, then the
@@ -149,8 +148,8 @@ static int prepare(struct ladder *l)
     BRC_TRY(find_observable(l->ctx, study));
     for (int i = 0; i < study->n_models; i++)
         BRC_TRY(brc_converge_first_settings(l->ctx, o, &study->model[i]));
-    brc_log(l->ctx, "%s: %zu grains, specimens: %d", o->run_case->name, l->n_grains, o->seeds);
-    BRC_TRY(brc_folder_make(l->ctx, o->dir));
+    brc_log(l->ctx, "%s: %zu grains, specimens: %d", o->run.run_case->name, l->n_grains, o->seeds);
+    BRC_TRY(brc_folder_make(l->ctx, o->run.dir));
     return brc_converge_record_open(l->ctx, &l->record, study);
 }
 
@@ -160,7 +159,7 @@ static int prepare(struct ladder *l)
  * count as spoilt. */
 static int check_place(struct brc_context *ctx, const struct brc_run_options *o)
 {
-    int code = brc_run_check_folder(ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
+    int code = brc_run_check_folder(ctx, o);
     return code == BRC_ERR_INPUT ? (ctx->code = BRC_ERR_USAGE) : code;
 }
 
@@ -171,7 +170,7 @@ static int task_folder(struct brc_context *ctx, const struct ladder *l, const st
 {
     char name[64];
     snprintf(name, sizeof name, "converge_unfinished/%016" PRIx64, t->setting->run[t->seed].key);
-    return brc_folder_path(ctx, l->study.options->dir, name, dir);
+    return brc_folder_path(ctx, l->study.options->run.dir, name, dir);
 }
 
 static const char *name_of(const void *user, int i)
@@ -193,8 +192,8 @@ static int run_task(struct brc_context *ctx, const void *user, int i, struct brc
     char dir[BRC_PATH_SIZE];
     BRC_TRY(task_folder(ctx, l, t, dir));
     bool has_begun = brc_run_has_begun(dir);
-    bool goes_on = o->is_resumed && has_begun && brc_folder_has(dir, "state.h5");
-    int code = brc_converge_case(ctx, o->run_case, t->setting, t->seed, &run_case);
+    bool goes_on = o->run.is_resumed && has_begun && brc_folder_has(dir, "state.h5");
+    int code = brc_converge_case(ctx, o->run.run_case, t->setting, t->seed, &run_case);
     if (code == 0)
         code = brc_specimen_create(ctx, &run_case.specimen, &specimen);
     const struct brc_run_options options = {.run_case = &run_case,
@@ -230,7 +229,7 @@ static void log_run(const struct ladder *l, const struct task *t, const struct b
         snprintf(said, sizeof said, "no %s", what->name);
     brc_log(l->ctx, "%d of %zu  %s  %s %s  seed %d  %s  %" PRId64 " steps  %.2f s  about %s left",
             l->n_done, l->n_tasks, t->model->model->name, t->setting->axis, t->setting->label,
-            l->study.options->run_case->specimen.seed + t->seed, said, run->steps, run->cpu_s,
+            l->study.options->run.run_case->specimen.seed + t->seed, said, run->steps, run->cpu_s,
             left);
 }
 
@@ -253,7 +252,7 @@ static double expected(const struct brc_converge_model *m, const struct brc_conv
 static int fail_interrupted(struct ladder *l)
 {
     BRC_FAIL(l->ctx, BRC_ERR_INTERRUPTED, "interrupted; %zu finished runs are kept in %s",
-             l->record.n, l->study.options->dir);
+             l->record.n, l->study.options->run.dir);
 }
 
 /* A run that its setting has spoilt has no value but is done; other failures end all. It is in the
@@ -278,8 +277,8 @@ static int read_outcome(struct brc_context *ctx, void *user, int i, const struct
     for (int k = 0; k < l->study.n_results; k++)
         run->result[k] = o->code ? NAN : o->summary.results[k].value;
     BRC_TRY(brc_converge_record_add(ctx, &l->record, name_of(l, i),
-                                    l->study.options->run_case->specimen.seed + t->seed, t->setting,
-                                    run));
+                                    l->study.options->run.run_case->specimen.seed + t->seed,
+                                    t->setting, run));
     run->is_done = true;
     BRC_TRY(task_folder(ctx, l, t, dir));
     BRC_TRY(brc_run_remove(ctx, dir));
@@ -372,7 +371,7 @@ static int run_all(struct ladder *l)
     }
     BRC_TRY(run_phase(l, 1, BRC_CONVERGE_MAX_SETTINGS));
     char path[BRC_PATH_SIZE];
-    BRC_TRY(brc_folder_path(l->ctx, l->study.options->dir, "converge_unfinished", path));
+    BRC_TRY(brc_folder_path(l->ctx, l->study.options->run.dir, "converge_unfinished", path));
     rmdir(path);
     return 0;
 }
@@ -392,7 +391,7 @@ static int report(struct ladder *l)
         brc_converge_report_make(study, i, &reports[i]);
     brc_converge_print(stdout, study, reports);
     fflush(stdout);
-    int code = brc_text_file_begin(l->ctx, &file, study->options->dir, "converge.txt");
+    int code = brc_text_file_begin(l->ctx, &file, study->options->run.dir, "converge.txt");
     if (code == 0) {
         brc_converge_print(file.out, study, reports);
         code = brc_text_file_end(l->ctx, &file);

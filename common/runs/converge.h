@@ -5,20 +5,20 @@
 #ifndef BRC_CONVERGE_H
 #define BRC_CONVERGE_H
 
-#include "common/runs/case.h"
+#include "common/runs/run.h"
 
 /* Bounds of what is asked for: tables of settings are arrays of these sizes. */
 enum { BRC_CONVERGE_MAX_SEEDS = 64, BRC_CONVERGE_MAX_SETTINGS = 96, BRC_CONVERGE_MAX_REFINE = 256 };
 enum { BRC_CONVERGE_MAX_MODELS = 16, BRC_CONVERGE_MAX_AXES = 32 };
 
 struct brc_converge_options {
-    const struct brc_case *run_case;
-    const char *model;          /* this one alone; NULL: those of the case */
-    const char *dir;            /* of converge*, beside those of other commands */
-    const char *observable;     /* name of a result */
-    const char *axes;           /* names, separated by commas; "": all */
-    int seeds, refine, jobs;    /* specimens; factor of the finest loading; runs at a time */
-    bool is_resumed, is_forced; /* resumed: finished runs are kept, unfinished ones go on */
+    /* dir: of converge*, beside those of other commands; resumed: finished runs are kept,
+     * unfinished ones go on */
+    struct brc_run_options run;
+    const char *model;       /* this one alone; NULL: those of the case */
+    const char *observable;  /* name of a result */
+    const char *axes;        /* names, separated by commas; "": all */
+    int seeds, refine, jobs; /* specimens; factor of the finest loading; runs at a time */
 };
 
 /* Runs what is missing, prints the table and writes converge.txt, converge.csv (a line a setting),

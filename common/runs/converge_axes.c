@@ -86,7 +86,7 @@ static int add(struct brc_context *ctx, const struct brc_converge_options *optio
     for (int i = 0; i < options->seeds; i++) {
         struct brc_context own = BRC_CONTEXT_INIT;
         struct brc_case run_case;
-        int code = brc_converge_case(&own, options->run_case, s, i, &run_case);
+        int code = brc_converge_case(&own, options->run.run_case, s, i, &run_case);
         if (code == 0)
             code = make_key(&own, &run_case, m, &s->run[i].key);
         brc_case_free(&run_case);
@@ -215,7 +215,7 @@ static int add_ladder(struct brc_context *ctx, const struct brc_converge_options
         if (l->n_factors > 0)
             factor = l->factors[i];
         struct brc_converge_setting s = make(l->name, l->role, factor);
-        if (l->put(&s, options->run_case, m, factor)) {
+        if (l->put(&s, options->run.run_case, m, factor)) {
             BRC_TRY(add(ctx, options, m, &s));
             continue;
         }
@@ -318,11 +318,11 @@ static void put_reference(struct brc_converge_setting *s, const struct brc_conve
     double loading = (which == BRC_CONVERGE_AT_LOADING ? 2.0 : 1.0) / o->refine;
     double step = which == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
     *s = make("reference", BRC_CONVERGE_REFERENCE, 1);
-    put_step(s, o->run_case, m, step);
+    put_step(s, o->run.run_case, m, step);
     if (m->test.loading == BRC_LOADING_ADAPTIVE)
-        put_target(s, o->run_case, m, loading);
+        put_target(s, o->run.run_case, m, loading);
     else
-        put_rate(s, o->run_case, m, loading);
+        put_rate(s, o->run.run_case, m, loading);
     if (brc_params_find(m->model->params, "evaluation"))
         add_line(s, "%s.evaluation=literal", m->model->name);
     s->weight = 1 / (loading * step);

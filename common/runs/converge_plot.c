@@ -169,9 +169,9 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
                       const struct brc_converge_report *report)
 {
     static const char *const picture[] = {"converge"};
-    const struct brc_case *run_case = study->options->run_case;
+    const struct brc_case *run_case = study->options->run.run_case;
     struct brc_text_file file;
-    BRC_TRY(brc_text_file_begin(ctx, &file, study->options->dir, "converge.gp"));
+    BRC_TRY(brc_text_file_begin(ctx, &file, study->options->run.dir, "converge.gp"));
     FILE *out = file.out;
     brc_gnuplot_head(out, "converge", 760 * study->n_models, 660, 12);
     fprintf(out,
@@ -192,5 +192,5 @@ int brc_converge_plot(struct brc_context *ctx, const struct brc_converge_study *
         put_panel(out, &report[i], i);
     fputs("unset multiplot\n", out);
     BRC_TRY(brc_text_file_end(ctx, &file));
-    return run_case->output.plots ? brc_gnuplot_draw(ctx, study->options->dir, picture, 1) : 0;
+    return run_case->output.plots ? brc_gnuplot_draw(ctx, study->options->run.dir, picture, 1) : 0;
 }

@@ -135,16 +135,16 @@ int brc_converge_record_open(struct brc_context *ctx, struct brc_converge_record
     const struct brc_converge_options *o = study->options;
     char header[HEADER_SIZE];
     *r = (struct brc_converge_record){.n_results = study->n_results};
-    BRC_TRY(brc_folder_path(ctx, o->dir, "converge_runs.csv", r->path));
-    BRC_TRY(brc_run_open(ctx, o->dir, "converge_runs.csv", &r->file));
+    BRC_TRY(brc_folder_path(ctx, o->run.dir, "converge_runs.csv", r->path));
+    BRC_TRY(brc_run_open(ctx, o->run.dir, "converge_runs.csv", &r->file));
     make_header(study, header);
     /* another ladder may have begun, and ended, since the folder was looked at */
     fseek(r->file, 0, SEEK_END);
-    if (!o->is_resumed && !o->is_forced && ftell(r->file) > 0)
+    if (!o->run.is_resumed && !o->run.is_forced && ftell(r->file) > 0)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
                  "%s has been written by another run just now; choose another folder with -o",
                  r->path);
-    if (o->is_forced && ftruncate(fileno(r->file), 0) != 0)
+    if (o->run.is_forced && ftruncate(fileno(r->file), 0) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot empty %s: %s", r->path, strerror(errno));
     BRC_TRY(read_old(ctx, r, header));
     fseek(r->file, 0, SEEK_END);

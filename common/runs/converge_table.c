@@ -181,7 +181,7 @@ static void put_cheapest(FILE *out, const struct brc_converge_report *r)
 void brc_converge_print(FILE *out, const struct brc_converge_study *study,
                         const struct brc_converge_report *report)
 {
-    const struct brc_case *run_case = study->options->run_case;
+    const struct brc_case *run_case = study->options->run.run_case;
     int seeds = study->options->seeds, first = run_case->specimen.seed;
     fprintf(out, "%s\n", *run_case->file.head.title ? run_case->file.head.title : run_case->name);
     fprintf(out, "%s, %d specimen%s (seed %d", study->results[study->observable].name, seeds,
@@ -228,7 +228,7 @@ int brc_converge_csv(struct brc_context *ctx, const struct brc_converge_study *s
 {
     struct brc_text_file file;
     const struct brc_result *seen = &study->results[study->observable];
-    BRC_TRY(brc_text_file_begin(ctx, &file, study->options->dir, "converge.csv"));
+    BRC_TRY(brc_text_file_begin(ctx, &file, study->options->run.dir, "converge.csv"));
     FILE *out = file.out;
     fprintf(out,
             "model,axis,setting,role,runs [1],%s [%s],error [1],standard_error [1],"

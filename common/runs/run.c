@@ -212,7 +212,7 @@ static void report(struct run *r, bool is_done, bool is_stopped)
                                       .broken = (int64_t)r->sim.events.table.n,
                                       .is_done = is_done,
                                       .is_stopped = is_stopped};
-    brc_progress_update(r->options->progress, r->options->progress_run, &now);
+    brc_progress_update(r->options->progress, 0, &now);
 }
 
 /* Why the run is over, NULL while it is not. The ends of the test come first: a signal in the last
@@ -406,13 +406,6 @@ static void log_header(struct run *r)
     log_line(r, "case.yaml: digest %016" PRIx64, brc_run_case_digest(r->case_text));
 }
 
-/* Twice: before the work of building the simulation, and again under the lock of the log. */
-static int check_folder(const struct run *r)
-{
-    const struct brc_run_options *o = r->options;
-    return brc_run_check_folder(r->ctx, o->dir, o->run_case, o->is_resumed, o->is_forced);
-}
-
 /* A log that a full disk has cut is a failure, unless there is another; buffered lines fail only as
  * it is closed. */
 static int close_log(struct run *r, int code)
@@ -434,7 +427,7 @@ static int close_log(struct run *r, int code)
 static int prepare(struct run *r)
 {
     const struct brc_run_options *o = r->options;
-    BRC_TRY(check_folder(r));
+    BRC_TRY(brc_run_check_folder(r->ctx, o));
     r->parameters = brc_case_text(r->ctx, o->run_case, o->model);
     if (!r->parameters)
         return BRC_ERR_MEMORY;
@@ -447,7 +440,7 @@ static int prepare(struct run *r)
     BRC_TRY(brc_case_keep(r->ctx, o->run_case, o->model, o->dir, &r->case_text));
     BRC_TRY(brc_run_check_case(r->ctx, o->dir, o->run_case, r->case_text, o->is_resumed));
     BRC_TRY(brc_run_open(r->ctx, o->dir, "log", &r->log));
-    BRC_TRY(check_folder(r)); /* another run may have begun, and ended, since */
+    BRC_TRY(brc_run_check_folder(r->ctx, o)); /* another run may have begun, and ended, since */
     bool has_state = o->is_resumed && brc_folder_has(o->dir, "state.h5");
     BRC_TRY(has_state ? load(r) : replace_old(r));
     log_header(r);

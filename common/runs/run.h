@@ -6,6 +6,8 @@
 #include "common/runs/case.h"
 #include "common/base/progress.h"
 
+/* What a run is told, and a comparison and a ladder (converge.h), which run several, too: those
+ * leave out model, progress and (a ladder, which makes its own) specimen. */
 struct brc_run_options {
     const struct brc_case *run_case;
     const struct brc_model *model;
@@ -14,7 +16,6 @@ struct brc_run_options {
     bool is_resumed; /* go on from dir/state.h5; from the start when the run has not saved one */
     bool is_forced;  /* replace results that are there */
     struct brc_progress *progress;
-    int progress_run; /* number of this run's line */
 };
 
 /* Runs to the end of the test. Writes to dir: case.yaml, log, state.h5, curve.csv, events.csv,
@@ -30,11 +31,10 @@ bool brc_run_has_begun(const char *dir);
  * own) and neither is_resumed nor is_forced allows it; when there is nothing to resume; and,
  * whatever is allowed, when an input of the case lies where a result goes. BRC_ERR_INPUT,
  * BRC_ERR_IO. */
-int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
-                         bool is_resumed, bool is_forced);
-/* The same for files of commands that run several: fails when dir holds one of n files, or the
+int brc_run_check_folder(struct brc_context *ctx, const struct brc_run_options *o);
+/* The same for files of commands that run several: fails when o->dir holds one of n files, or the
  * beginning of one (its name with .part), and may_replace is not set, or one is an input. */
-int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
+int brc_run_check_own(struct brc_context *ctx, const struct brc_run_options *o,
                       const char *const *names, int n, bool may_replace);
 /* Of the text of a kept case; the log tells it, as "case.yaml: digest ...". */
 uint64_t brc_run_case_digest(const char *text);

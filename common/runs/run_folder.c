@@ -80,12 +80,11 @@ static int check_absent(struct brc_context *ctx, const char *dir, const char *na
 }
 
 /* By device and inode, so that links and .. do not hide it. */
-static int check_input(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
-                       const char *name)
+static int check_input(struct brc_context *ctx, const struct brc_run_options *o, const char *name)
 {
     char path[BRC_PATH_SIZE];
-    BRC_TRY(brc_folder_path(ctx, dir, name, path));
-    if (brc_case_is_input(run_case, path))
+    BRC_TRY(brc_folder_path(ctx, o->dir, name, path));
+    if (brc_case_is_input(o->run_case, path))
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
             "%s is an input of this run, which would replace it; choose another folder with -o",
@@ -94,13 +93,13 @@ static int check_input(struct brc_context *ctx, const char *dir, const struct br
 }
 
 /* Inputs first, since they are refused whatever is allowed. */
-int brc_run_check_own(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
+int brc_run_check_own(struct brc_context *ctx, const struct brc_run_options *o,
                       const char *const *names, int n, bool may_replace)
 {
     for (int i = 0; i < n; i++) {
-        BRC_TRY(check_input(ctx, dir, run_case, names[i]));
+        BRC_TRY(check_input(ctx, o, names[i]));
         if (!may_replace)
-            BRC_TRY(check_absent(ctx, dir, names[i]));
+            BRC_TRY(check_absent(ctx, o->dir, names[i]));
     }
     return 0;
 }
@@ -134,16 +133,14 @@ static int check_resumed(struct brc_context *ctx, const char *dir)
 }
 
 /* The kept case may be the one that is read: it is judged when it is written. */
-int brc_run_check_folder(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
-                         bool is_resumed, bool is_forced)
+int brc_run_check_folder(struct brc_context *ctx, const struct brc_run_options *o)
 {
-    BRC_TRY(brc_folder_check_writable(ctx, dir));
-    BRC_TRY(check_input(ctx, dir, run_case, "log"));
-    BRC_TRY(brc_run_check_own(ctx, dir, run_case, result_files, N_RESULT_FILES,
-                              is_resumed || is_forced));
-    if (is_resumed)
-        return check_resumed(ctx, dir);
-    return is_forced ? 0 : check_new(ctx, dir);
+    BRC_TRY(brc_folder_check_writable(ctx, o->dir));
+    BRC_TRY(check_input(ctx, o, "log"));
+    BRC_TRY(brc_run_check_own(ctx, o, result_files, N_RESULT_FILES, o->is_resumed || o->is_forced));
+    if (o->is_resumed)
+        return check_resumed(ctx, o->dir);
+    return o->is_forced ? 0 : check_new(ctx, o->dir);
 }
 
 /* ---- writing ------------------------------------------------------------------------------- */

@@ -92,8 +92,9 @@ static void test_compare(void **state)
     struct scene s;
     (void)state;
     open_scene(&s);
-    const struct brc_compare_options order = {
-        .run_case = &s.run_case, .specimen = &s.specimen, .dir = s.dir, .is_quiet = true};
+    const struct brc_run_options order = {
+        .run_case = &s.run_case, .specimen = &s.specimen, .dir = s.dir};
+    s.ctx.quiet = 1;
     signal_waits(SIGUSR1);
     CHECK_FAILS(&s.ctx, brc_compare(&s.ctx, &order), BRC_ERR_NOT_BEGUN, "nothing was saved");
     forget(SIGUSR1);

@@ -131,7 +131,7 @@ static void test_judge(void **state)
     static struct brc_converge_setting settings[16];
     static struct brc_converge_report report;
     static struct brc_case run_case;
-    const struct brc_converge_options order = {.run_case = &run_case, .seeds = N_SEEDS};
+    const struct brc_converge_options order = {.run = {.run_case = &run_case}, .seeds = N_SEEDS};
     study.options = &order;
     make_study(&study, settings);
     brc_converge_report_make(&study, 0, &report);
@@ -173,7 +173,7 @@ static void test_print(void **state)
     static struct brc_converge_setting settings[16];
     static struct brc_converge_report report;
     static struct brc_case run_case;
-    const struct brc_converge_options order = {.run_case = &run_case, .seeds = N_SEEDS};
+    const struct brc_converge_options order = {.run = {.run_case = &run_case}, .seeds = N_SEEDS};
     char *text = NULL;
     size_t size = 0;
     study.options = &order;
