@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* YAML events to a flat list of entries, with the bytes where each stands: the writer puts values
- * back in their place. Anchors, tags and several documents are refused: a case is data that people
- * read. Called through casefile.h by whoever has a case; knows the keys of no section but the top
- * level's. */
+/* A YAML document to a flat list of entries, with the bytes where each stands: the writer puts
+ * values back in their place. Anchors, tags and several documents are refused: a case is data that
+ * people read. Called through casefile.h by whoever has a case; knows the keys of no section but
+ * the top level's.
+ *
+ * The document is loaded as a whole and then walked through, rather than read event by event: what
+ * a value belongs to is then known from where it is, and need not be kept beside a stack. A case
+ * has a page or two, so that memory does not count. */
 #include "common/input/casefile.h"
 
 #include "common/base/grow.h"
@@ -15,27 +19,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A mapping that is open while the file is read. Levels are an array, not the stack of a recursion:
- * three are allowed, and a deeper file is an error at once. */
-struct level {
-    char key[BRC_CASEFILE_KEY_SIZE]; /* the key whose value is awaited, "" before a key */
-    int line, column;                /* of that key */
-    size_t key_begin;                /* byte where it starts */
-    int place;                       /* of the mapping in the sections, -1: the root */
-    bool has_values;
-};
-
+/* What stays the same while a document is walked through, and the last value. */
 struct reader {
     struct brc_context *ctx;
     struct brc_casefile *c;
-    struct level level[BRC_CASEFILE_MAX_LEVELS];
-    int depth;               /* open mappings */
-    bool is_sequence;        /* inside [...] */
-    char *sequence;          /* its texts so far, joined by commas */
-    bool is_done;            /* the document has ended */
-    size_t n_chars, n_bytes; /* up to the same place of the text */
-    size_t begin, end;       /* bytes of the last value */
-    int indent;              /* see brc_casefile_entry */
+    yaml_document_t document;
+    const char *key[BRC_CASEFILE_MAX_LEVELS]; /* from the top level to the one that is being read */
+    size_t n_chars, n_bytes;                  /* up to the same place of the text */
+    size_t key_begin, begin, end;             /* bytes of the last key and value */
+};
+
+/* A key with its value, and the mapping that they are in. */
+struct pair {
+    const yaml_node_t *key, *value;
+    int depth; /* of the key: 0 at the top level */
+    int place; /* of the mapping in the sections, -1: the root */
 };
 
 /* ---- bytes --------------------------------------------------------------------------------- */
@@ -156,11 +154,16 @@ static int add_entry(struct brc_context *ctx, struct brc_casefile *c, const char
     return 0;
 }
 
-/* ---- YAML events --------------------------------------------------------------------------- */
+/* ---- the document -------------------------------------------------------------------------- */
 
 static int fail_at(struct reader *r, int line, const char *what)
 {
     BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: %s", r->c->path, line, what);
+}
+
+static int line_of(const yaml_node_t *node)
+{
+    return (int)node->start_mark.line + 1;
 }
 
 /* Bytes of the text up to a mark, which counts characters. Marks come in ascending order but for
@@ -186,226 +189,162 @@ static void end_value(struct reader *r, const yaml_mark_t *mark)
         r->end--;
 }
 
-/* The value has been read: a key may follow. */
-static void end_key(struct level *level)
+/* The text of a node that must be a plain one: a key, a value or an item of a sequence. */
+static int check_scalar(struct reader *r, const yaml_node_t *node)
 {
-    level->key[0] = '\0';
-    level->has_values = true;
+    for (size_t i = 0; i < node->data.scalar.length; i++)
+        if (node->data.scalar.value[i] < 0x20)
+            return fail_at(r, line_of(node), "a value must be one line without control characters");
+    return 0;
 }
 
-/* The key whose value comes now: an entry at the level it belongs to. */
-static int add_value(struct reader *r, const char *text, int line)
+/* An entry of the mapping that the pair is in. */
+static int add_value(struct reader *r, const struct pair *p, const char *text, int indent)
 {
-    struct level *top = &r->level[r->depth - 1];
-    const char *name[3] = {r->depth > 1 ? r->level[0].key : "", r->depth > 2 ? r->level[1].key : "",
-                           top->key};
-    BRC_TRY(add_entry(r->ctx, r->c, name, text, line));
+    const char *const name[3] = {p->depth > 0 ? r->key[0] : "", p->depth > 1 ? r->key[1] : "",
+                                 r->key[p->depth]};
+    BRC_TRY(add_entry(r->ctx, r->c, name, text, line_of(p->key)));
     struct brc_casefile_entry *e = &r->c->entries[r->c->n - 1];
-    e->key_begin = top->key_begin;
-    e->place = top->place;
+    e->key_begin = r->key_begin;
+    e->place = p->place;
     e->begin = r->begin;
     e->end = r->end;
-    e->indent = r->indent;
-    end_key(top);
-    return 0;
-}
-
-/* A sequence is one value, "a, b, c": the lists know triples, and --set writes them so. */
-static int add_item(struct reader *r, const char *text)
-{
-    size_t old = strlen(r->sequence), n = strlen(text);
-    char *longer = brc_realloc(r->ctx, r->sequence, old + n + 3, 1);
-    if (!longer)
-        return BRC_ERR_MEMORY;
-    r->sequence = longer;
-    strcat(strcat(longer, old ? ", " : ""), text);
-    return 0;
-}
-
-static int read_key(struct reader *r, const yaml_event_t *event, int line)
-{
-    struct level *top = &r->level[r->depth - 1];
-    const char *text = (const char *)event->data.scalar.value;
-    char where[BRC_CASEFILE_WHERE_SIZE];
-    BRC_TRY(check_name(r->ctx, text, event->data.scalar.length,
-                       brc_casefile_where(r->c, line, false, where)));
-    snprintf(top->key, sizeof top->key, "%s", text);
-    top->line = line;
-    top->column = (int)event->start_mark.column;
-    top->key_begin = byte_at(r, &event->start_mark);
+    e->indent = indent;
     return 0;
 }
 
 /* A key without a value is an empty section where it can be one. A number as a key is the second
  * half of one with a decimal comma, `{length: 1,5 m}`: to YAML that is two keys. */
-static int read_null(struct reader *r)
+static int read_null(struct reader *r, const struct pair *p)
 {
-    struct level *top = &r->level[r->depth - 1];
-    if (isdigit((unsigned char)top->key[0]))
+    const char *key = r->key[p->depth];
+    int line = line_of(p->key);
+    if (isdigit((unsigned char)key[0]))
         BRC_FAIL(r->ctx, BRC_ERR_INPUT,
                  "%s:%d: '%s' follows a comma: in braces and brackets a comma ends a value, so "
                  "write numbers with a decimal point",
-                 r->c->path, top->line, top->key);
-    if (r->depth > 1 || brc_params_find(brc_casefile_param_list, top->key))
+                 r->c->path, line, key);
+    if (p->depth > 0 || brc_params_find(brc_casefile_param_list, key))
         BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: %s: has no value; write one or leave the key out",
-                 r->c->path, top->line, top->key);
-    BRC_TRY(add_section(r->ctx, r->c, top->key, top->line));
+                 r->c->path, line, key);
+    BRC_TRY(add_section(r->ctx, r->c, key, line));
     struct brc_casefile_place *s = &r->c->sections[r->c->n_sections - 1];
     s->form = BRC_CASEFILE_NULL;
     s->begin = r->begin;
     s->end = r->end;
-    end_key(top);
     return 0;
 }
 
-/* A key, a value, or an item of a sequence, by what is open. An empty plain value is YAML's null;
- * in quotes it is a text. */
-static int read_scalar(struct reader *r, const yaml_event_t *event, int line)
+/* An empty plain value is YAML's null; in quotes it is a text. */
+static int read_scalar(struct reader *r, const struct pair *p)
 {
-    const char *text = (const char *)event->data.scalar.value;
-    size_t n = event->data.scalar.length;
-    bool is_plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
-    if (r->depth == 0)
-        return fail_at(r, line, "a case file is a mapping, `key: value`; this is a lone value");
-    struct level *top = &r->level[r->depth - 1];
-    for (size_t i = 0; i < n; i++)
-        if ((unsigned char)text[i] < 0x20)
-            return fail_at(r, line, "a value must be one line without control characters");
-    if (!r->is_sequence && top->key[0] != '\0') {
-        r->begin = byte_at(r, &event->start_mark);
-        r->indent = 0;
+    const char *text = (const char *)p->value->data.scalar.value;
+    BRC_TRY(check_scalar(r, p->value));
+    r->begin = byte_at(r, &p->value->start_mark);
+    end_value(r, &p->value->end_mark);
+    if (p->value->data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
+        (!*text || strcmp(text, "~") == 0 || strcmp(text, "null") == 0))
+        return read_null(r, p);
+    return add_value(r, p, text, 0);
+}
+
+/* A sequence is one value, "a, b, c": the lists know triples, and --set writes them so. One in
+ * brackets ends behind them, one on lines of its own with its last item. */
+static int read_items(struct reader *r, const struct pair *p, char **text)
+{
+    size_t size = 1;
+    const yaml_node_item_t *first = p->value->data.sequence.items.start,
+                           *end = p->value->data.sequence.items.top;
+    const yaml_mark_t *mark = &p->value->end_mark;
+    for (const yaml_node_item_t *i = first; i < end; i++) {
+        const yaml_node_t *item = yaml_document_get_node(&r->document, *i);
+        if (item->type != YAML_SCALAR_NODE)
+            return fail_at(r, line_of(item),
+                           "a sequence holds plain values, no mappings and no sequences");
+        BRC_TRY(check_scalar(r, item));
+        size += item->data.scalar.length + 2;
+        if (r->c->text[r->begin] != '[')
+            mark = &item->end_mark;
     }
-    end_value(r, &event->end_mark);
-    if (r->is_sequence)
-        return add_item(r, text);
-    if (top->key[0] == '\0')
-        return read_key(r, event, line);
-    if (is_plain && (n == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0))
-        return read_null(r);
-    return add_value(r, text, top->line);
+    end_value(r, mark);
+    *text = brc_alloc(r->ctx, size, 1);
+    for (const yaml_node_item_t *i = first; *text && i < end; i++)
+        strcat(strcat(*text, i > first ? ", " : ""),
+               (const char *)yaml_document_get_node(&r->document, *i)->data.scalar.value);
+    return *text ? 0 : BRC_ERR_MEMORY;
 }
 
-static struct brc_casefile_place *place_of(struct reader *r, const struct level *level)
+/* The dashes of a sequence may stand in the column of its key; another value that takes its place
+ * may not, and needs blanks. */
+static int read_sequence(struct reader *r, const struct pair *p)
 {
-    return level->place < 0 ? &r->c->root : &r->c->sections[level->place];
-}
-
-/* A mapping under a section is a group of keys, `interaction: {rule: gap, gap: 1 mm}`; it has a
- * place of its own, where the writer adds keys to it. */
-static int open_mapping(struct reader *r, const yaml_event_t *event, int line)
-{
-    char name[2 * BRC_CASEFILE_KEY_SIZE];
-    bool is_flow = event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
-    if (r->is_sequence)
-        return fail_at(r, line, "a sequence holds plain values, no mappings");
-    if (r->depth > 0 && r->level[r->depth - 1].key[0] == '\0')
-        return fail_at(r, line, "a key must be a plain word");
-    if (r->depth == BRC_CASEFILE_MAX_LEVELS)
-        return fail_at(r, line, "mappings are nested deeper than 3 levels; join keys as a_b");
-    if (r->depth > 0) {
-        snprintf(name, sizeof name, "%s%s%s", r->level[0].key, r->depth > 1 ? "." : "",
-                 r->depth > 1 ? r->level[1].key : "");
-        BRC_TRY(add_section(r->ctx, r->c, name, r->level[r->depth - 1].line));
-    }
-    r->level[r->depth] = (struct level){.place = r->depth > 0 ? (int)r->c->n_sections - 1 : -1};
-    struct brc_casefile_place *place = place_of(r, &r->level[r->depth]);
-    place->form = is_flow ? BRC_CASEFILE_FLOW : BRC_CASEFILE_BLOCK;
-    place->indent = (int)event->start_mark.column;
-    r->begin = byte_at(r, &event->start_mark);
-    r->end = r->begin + is_flow;
-    r->depth++;
-    return 0;
-}
-
-/* A mapping in braces ends behind its brace, one on lines of its own with its last value: libyaml's
- * mark of the latter lies at the next key, behind comments that are not its own. */
-static int close_mapping(struct reader *r, const yaml_event_t *event)
-{
-    r->depth--;
-    const struct level *closed = &r->level[r->depth];
-    struct brc_casefile_place *place = place_of(r, closed);
-    place->end = r->end;
-    if (place->form == BRC_CASEFILE_FLOW) {
-        if (!closed->has_values)
-            place->form = BRC_CASEFILE_EMPTY;
-        end_value(r, &event->end_mark);
-    }
-    if (r->depth > 0)
-        end_key(&r->level[r->depth - 1]);
-    return 0;
-}
-
-static int open_sequence(struct reader *r, const yaml_event_t *event, int line)
-{
-    int column = (int)event->start_mark.column;
-    if (r->depth == 0)
-        return fail_at(r, line, "a case file is a mapping, `key: value`; this is a sequence");
-    if (r->is_sequence || r->level[r->depth - 1].key[0] == '\0')
-        return fail_at(r, line, "a sequence must be the value of a key and hold plain values");
-    /* where a value takes its place: the dashes of a sequence may stand in the column of its key,
-     * another value may not */
-    int key = r->level[r->depth - 1].column;
-    bool is_flow = event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE;
-    r->begin = byte_at(r, &event->start_mark);
-    r->indent = is_flow || column > key ? 0 : key + 2 - column;
-    r->is_sequence = true;
-    r->sequence = brc_alloc(r->ctx, 1, 1);
-    return r->sequence ? 0 : BRC_ERR_MEMORY;
-}
-
-static int close_sequence(struct reader *r, const yaml_event_t *event)
-{
-    if (r->c->text[r->begin] == '[')
-        end_value(r, &event->end_mark);
-    int code = add_value(r, r->sequence, r->level[r->depth - 1].line);
-    free(r->sequence);
-    r->sequence = NULL;
-    r->is_sequence = false;
+    char *text = NULL;
+    int column = (int)p->value->start_mark.column, key = (int)p->key->start_mark.column;
+    bool is_flow = p->value->data.sequence.style == YAML_FLOW_SEQUENCE_STYLE;
+    r->begin = byte_at(r, &p->value->start_mark);
+    int code = read_items(r, p, &text);
+    if (code == 0)
+        code = add_value(r, p, text, is_flow || column > key ? 0 : key + 2 - column);
+    free(text);
     return code;
 }
 
-/* Anchors, aliases and tags are YAML's way to programs; a case file is data. Scalars, sequences and
- * mappings begin with anchor and tag, aliases with the anchor, so that any of the union's members
- * shows them (C17, 6.5.2.3). */
-static int refuse_extras(struct reader *r, const yaml_event_t *event, int line)
+static int read_pair(struct reader *r, const struct pair *p);
+
+/* A mapping under a section is a group of keys, `interaction: {rule: gap, gap: 1 mm}`; it has a
+ * place of its own, where the writer adds keys to it. One in braces ends behind its brace, one on
+ * lines of its own with its last value: libyaml's mark of the latter lies at the next key, behind
+ * comments that are not its own. */
+static int read_mapping(struct reader *r, const yaml_node_t *node, int depth, int place)
 {
-    bool has_tag = event->type == YAML_SCALAR_EVENT || event->type == YAML_SEQUENCE_START_EVENT ||
-                   event->type == YAML_MAPPING_START_EVENT;
-    if (event->type == YAML_ALIAS_EVENT || (has_tag && event->data.scalar.anchor))
-        return fail_at(r, line,
-                       "anchors and aliases (&name, *name) are not accepted; write the "
-                       "value out at each place");
-    if (has_tag && event->data.scalar.tag)
-        return fail_at(r, line, "tags (!name) are not accepted; write the plain value");
+    const yaml_node_pair_t *first = node->data.mapping.pairs.start,
+                           *end = node->data.mapping.pairs.top;
+    bool is_flow = node->data.mapping.style == YAML_FLOW_MAPPING_STYLE;
+    enum brc_casefile_form form = !is_flow       ? BRC_CASEFILE_BLOCK
+                                  : first == end ? BRC_CASEFILE_EMPTY
+                                                 : BRC_CASEFILE_FLOW;
+    r->begin = byte_at(r, &node->start_mark);
+    r->end = r->begin + is_flow;
+    for (const yaml_node_pair_t *i = first; i < end; i++) {
+        const struct pair p = {yaml_document_get_node(&r->document, i->key),
+                               yaml_document_get_node(&r->document, i->value), depth, place};
+        BRC_TRY(read_pair(r, &p));
+    }
+    struct brc_casefile_place *s = place < 0 ? &r->c->root : &r->c->sections[place];
+    s->form = form;
+    s->indent = (int)node->start_mark.column;
+    s->end = r->end;
+    if (is_flow)
+        end_value(r, &node->end_mark);
     return 0;
 }
 
-/* Stream and document events carry nothing here, but that a second document is refused: which of
- * the two would be the case? */
-static int read_event(struct reader *r, const yaml_event_t *event)
+/* The depth is bounded, so that the walk is, too. */
+static int open_mapping(struct reader *r, const struct pair *p)
 {
-    int line = (int)event->start_mark.line + 1;
-    BRC_TRY(refuse_extras(r, event, line));
-    switch (event->type) {
-    case YAML_DOCUMENT_START_EVENT:
-        return r->is_done ? fail_at(r, line, "a case file holds one document; this is a second")
-                          : 0;
-    case YAML_DOCUMENT_END_EVENT:
-        r->is_done = true;
-        return 0;
-    case YAML_SCALAR_EVENT:
-        return read_scalar(r, event, line);
-    case YAML_MAPPING_START_EVENT:
-        return open_mapping(r, event, line);
-    case YAML_MAPPING_END_EVENT:
-        return close_mapping(r, event);
-    case YAML_SEQUENCE_START_EVENT:
-        return open_sequence(r, event, line);
-    case YAML_SEQUENCE_END_EVENT:
-        return close_sequence(r, event);
-    default:
-        return 0;
-    }
+    char name[2 * BRC_CASEFILE_KEY_SIZE];
+    if (p->depth + 1 == BRC_CASEFILE_MAX_LEVELS)
+        return fail_at(r, line_of(p->value),
+                       "mappings are nested deeper than 3 levels; join keys as a_b");
+    snprintf(name, sizeof name, "%s%s%s", r->key[0], p->depth > 0 ? "." : "",
+             p->depth > 0 ? r->key[1] : "");
+    BRC_TRY(add_section(r->ctx, r->c, name, line_of(p->key)));
+    return read_mapping(r, p->value, p->depth + 1, (int)r->c->n_sections - 1);
+}
+
+static int read_pair(struct reader *r, const struct pair *p)
+{
+    char where[BRC_CASEFILE_WHERE_SIZE];
+    if (p->key->type != YAML_SCALAR_NODE)
+        return fail_at(r, line_of(p->key), "a key must be a plain word");
+    BRC_TRY(check_scalar(r, p->key));
+    r->key[p->depth] = (const char *)p->key->data.scalar.value;
+    BRC_TRY(check_name(r->ctx, r->key[p->depth], p->key->data.scalar.length,
+                       brc_casefile_where(r->c, line_of(p->key), false, where)));
+    r->key_begin = byte_at(r, &p->key->start_mark);
+    return p->value->type == YAML_SCALAR_NODE     ? read_scalar(r, p)
+           : p->value->type == YAML_SEQUENCE_NODE ? read_sequence(r, p)
+                                                  : open_mapping(r, p);
 }
 
 /* What YAML says of a line. Of a tab it says "found character that cannot start any token", which
@@ -424,32 +363,64 @@ static int fail_yaml(struct reader *r, const yaml_parser_t *parser)
              parser->context ? parser->context : "");
 }
 
-/* Events are freed one by one, also those that were refused. */
-static int read_events(struct reader *r, yaml_parser_t *parser)
+/* Anchors, aliases and tags are YAML's way to programs; a case file is data. Looked for in the
+ * words of the file, as a document that is loaded has none left. Where the words end in an error
+ * the loader meets it, too. */
+static int refuse_extras(struct reader *r, yaml_parser_t *parser)
 {
-    yaml_event_t event;
-    for (bool is_end = false; !is_end;) {
-        if (!yaml_parser_parse(parser, &event))
-            return fail_yaml(r, parser);
-        int code = read_event(r, &event);
-        is_end = event.type == YAML_STREAM_END_EVENT;
-        yaml_event_delete(&event);
-        BRC_TRY(code);
+    yaml_token_t token;
+    int code = 0;
+    for (bool is_end = false; !is_end && code == 0 && yaml_parser_scan(parser, &token);) {
+        int line = (int)token.start_mark.line + 1;
+        if (token.type == YAML_ANCHOR_TOKEN || token.type == YAML_ALIAS_TOKEN)
+            code = fail_at(r, line,
+                           "anchors and aliases (&name, *name) are not accepted; write the value "
+                           "out at each place");
+        else if (token.type == YAML_TAG_TOKEN)
+            code = fail_at(r, line, "tags (!name) are not accepted; write the plain value");
+        is_end = token.type == YAML_STREAM_END_TOKEN;
+        yaml_token_delete(&token);
     }
-    return 0;
+    return code;
 }
 
-static int parse_yaml(struct brc_context *ctx, struct brc_casefile *c, size_t size)
+/* An empty document has no root, and so has what follows the last one. A second is refused: which
+ * of the two would be the case? */
+static int read_documents(struct reader *r, yaml_parser_t *parser)
 {
-    struct reader r = {.ctx = ctx, .c = c};
+    int code = 0;
+    const yaml_node_t *root;
+    for (int n = 0; code == 0; n++) {
+        if (!yaml_parser_load(parser, &r->document))
+            return fail_yaml(r, parser);
+        root = yaml_document_get_root_node(&r->document);
+        if (root && n > 0)
+            code = fail_at(r, (int)r->document.start_mark.line + 1,
+                           "a case file holds one document; this is a second");
+        else if (root && root->type != YAML_MAPPING_NODE)
+            code = fail_at(r, line_of(root),
+                           root->type == YAML_SCALAR_NODE
+                               ? "a case file is a mapping, `key: value`; this is a lone value"
+                               : "a case file is a mapping, `key: value`; this is a sequence");
+        else if (root)
+            code = read_mapping(r, root, 0, -1);
+        yaml_document_delete(&r->document);
+        if (!root)
+            break;
+    }
+    return code;
+}
+
+/* Goes through the text from its start. */
+static int parse(struct reader *r, size_t size, int (*act)(struct reader *r, yaml_parser_t *parser))
+{
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser))
-        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for the YAML parser");
+        BRC_FAIL(r->ctx, BRC_ERR_MEMORY, "out of memory for the YAML parser");
     yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&parser, (const unsigned char *)c->text, size);
-    int code = read_events(&r, &parser);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)r->c->text, size);
+    int code = act(r, &parser);
     yaml_parser_delete(&parser);
-    free(r.sequence);
     return code;
 }
 
@@ -464,7 +435,9 @@ int brc_casefile_parse(struct brc_context *ctx, const char *path, const char *te
     c->text = copy_text(ctx, text, size);
     if (!c->path || !c->text)
         return BRC_ERR_MEMORY;
-    BRC_TRY(parse_yaml(ctx, c, size));
+    struct reader r = {.ctx = ctx, .c = c};
+    BRC_TRY(parse(&r, size, refuse_extras));
+    BRC_TRY(parse(&r, size, read_documents));
     return brc_casefile_top_level(ctx, c);
 }
 

@@ -6,19 +6,16 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Line of another entry of the file that means the same key, 0 when there is none. By meaning, not
- * by spelling: `interaction: gap` and `interaction: {rule: gap}` are the same key, and so is an
- * older name. Overrides are left out: there the last one holds. */
+/* Line of an earlier entry of the file that means the same key as entry i, which is the file's too;
+ * 0 when there is none. By meaning, not by spelling: `interaction: gap` and `interaction: {rule:
+ * gap}` are the same key, and so is an older name. */
 static int find_twin(const struct brc_casefile *c, size_t i, struct brc_param_list list)
 {
-    const char *key = brc_casefile_key(&c->entries[i], list);
-    for (size_t j = 0; j < i; j++) {
-        const struct brc_casefile_entry *e = &c->entries[j];
-        if (!e->is_override && strcmp(e->section, c->entries[i].section) == 0 &&
-            strcmp(brc_casefile_key(e, list), key) == 0)
-            return e->line;
-    }
-    return 0;
+    struct brc_casefile before = *c; /* as far as it was read then; overrides stand behind all */
+    const struct brc_casefile_entry *e = &c->entries[i];
+    before.n = i;
+    e = brc_casefile_find_entry(&before, e->section, brc_casefile_key(e, list), list);
+    return e ? e->line : 0;
 }
 
 /* After all entries, so that a slip in the name of the key itself is told first, with what was

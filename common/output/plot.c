@@ -261,16 +261,12 @@ static double fit_scale(const struct view *v, const double extent[3])
  * would lie over each other. */
 static void put_axes(FILE *out, const struct brc_convex *domain, const struct view *v)
 {
-    double extent[3];
+    double low[3], high[3], extent[3];
     bool side = v->tilt > 45;
+    brc_box_of(low, high, domain->vertex, domain->n_vertices);
     for (int k = 0; k < 3; k++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (size_t i = 0; i < domain->n_vertices; i++) {
-            low = fmin(low, domain->vertex[i][k]);
-            high = fmax(high, domain->vertex[i][k]);
-        }
-        extent[k] = MM * (high - low);
-        fprintf(out, "set %crange [%.4f:%.4f]\n", "xyz"[k], MM * low, MM * high);
+        extent[k] = MM * (high[k] - low[k]);
+        fprintf(out, "set %crange [%.4f:%.4f]\n", "xyz"[k], MM * low[k], MM * high[k]);
         if ((k == 2) == side)
             fprintf(out, "set %ctics %g\nset %clabel '%c [mm]'\n", "xyz"[k], tic_step(extent[k], 4),
                     "xyz"[k], "xyz"[k]);

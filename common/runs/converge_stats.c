@@ -4,10 +4,8 @@
  * dash and not as a number. */
 #include "common/runs/converge_stats.h"
 
-#include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
-#include <string.h>
 
 enum { MAX_VALUES = 1024 };
 
@@ -27,14 +25,9 @@ double brc_converge_scatter(const double *value, int n)
     return deviation(value, n) / fabs(brc_converge_mean(value, n));
 }
 
-double brc_converge_median(const double *value, int n)
+double brc_converge_median(double *value, int n)
 {
-    double sorted[MAX_VALUES];
-    if (n < 1 || n > MAX_VALUES)
-        return NAN;
-    memcpy(sorted, value, (size_t)n * sizeof sorted[0]);
-    gsl_sort(sorted, 1, (size_t)n);
-    return gsl_stats_median_from_sorted_data(sorted, 1, (size_t)n);
+    return n > 0 ? gsl_stats_median(value, 1, (size_t)n) : NAN;
 }
 
 /* Over the specimens that have both values. Relative to the mean of the reference and not to each

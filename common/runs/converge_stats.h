@@ -22,8 +22,8 @@ struct brc_converge_error brc_converge_error(const double *value, const double *
  * (the larger standard error over sqrt 2, since two settings scatter in a difference). */
 double brc_converge_uncertainty(const struct brc_converge_error *loading,
                                 const struct brc_converge_error *step);
-/* NAN for none. */
-double brc_converge_median(const double *value, int n);
+/* NAN for none. The median puts the values out of order: it is found by partition, in place. */
+double brc_converge_median(double *value, int n);
 double brc_converge_mean(const double *value, int n);
 /* Standard deviation over the mean; NAN for fewer than two. */
 double brc_converge_scatter(const double *value, int n);

@@ -98,17 +98,6 @@ static double cpu_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Times go on over the parts of a resumed run, so they are counters of the state, fed between
- * saves. */
-static void add_times(struct run *r)
-{
-    double cpu = cpu_now(), wall = brc_progress_clock();
-    r->counts.cpu_s += cpu - r->cpu_before;
-    r->counts.wall_s += wall - r->wall_before;
-    r->cpu_before = cpu;
-    r->wall_before = wall;
-}
-
 /* Anew for each file, as the table of frames grows. */
 static const struct brc_h5_extra *extra_of(struct run *r)
 {
@@ -129,12 +118,17 @@ static const struct brc_h5_extra *extra_of(struct run *r)
     return &r->extra;
 }
 
-/* Frames first: the state tells which of them are its own, and what a stop has left in between is
- * swept away when the run goes on. */
+/* Times go on over the parts of a resumed run, so they are counters of the state, fed between
+ * saves. Frames first: the state tells which of them are its own, and what a stop has left in
+ * between is swept away when the run goes on. */
 static int save(struct run *r)
 {
     char path[BRC_PATH_SIZE];
-    add_times(r);
+    double cpu = cpu_now(), wall = brc_progress_clock();
+    r->counts.cpu_s += cpu - r->cpu_before;
+    r->counts.wall_s += wall - r->wall_before;
+    r->cpu_before = cpu;
+    r->wall_before = wall;
     BRC_TRY(brc_frames_flush(r->ctx, &r->frames, r->options->dir, extra_of(r)));
     BRC_TRY(brc_folder_path(r->ctx, r->options->dir, "state.h5", path));
     BRC_TRY(brc_h5_save(r->ctx, path, &r->sim, extra_of(r)));

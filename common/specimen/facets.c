@@ -33,15 +33,18 @@ int brc_facets_seeds(struct brc_context *ctx, struct brc_facets *f, size_t n)
     return f->seed && f->radius ? 0 : BRC_ERR_MEMORY;
 }
 
-/* |sum A n| / sum A over the facets of a cell: 0 for a closed body of flat facets. */
-static double cell_closure(const struct brc_facets *f, size_t cell)
+/* |sum A n| / sum A over the facets of a cell: 0 for a closed body of flat facets. A facet without
+ * area has its loop the wrong way round, or has collapsed. */
+static double cell_closure(const struct brc_facets *f, size_t cell, bool *has_reversed)
 {
     double sum[3] = {0, 0, 0}, total = 0;
+    *has_reversed = false;
     for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++) {
         int32_t facet = f->cell_facet[k];
         double sign = f->cell[facet][0] == (int32_t)cell ? 1 : -1;
         brc_axpy(sum, sign * f->area[facet], f->normal[facet]);
         total += f->area[facet];
+        *has_reversed = *has_reversed || !(f->area[facet] > 0);
     }
     return total > 0 ? brc_norm(sum) / total : 1;
 }
@@ -172,14 +175,6 @@ static bool is_convex(const struct brc_facets *f, const struct brc_convex *c, do
     return true;
 }
 
-static bool has_reversed_facet(const struct brc_facets *f, size_t cell)
-{
-    for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++)
-        if (!(f->area[f->cell_facet[k]] > 0))
-            return true;
-    return false;
-}
-
 /* The first fault is told, from gross to subtle, since the later questions presume the earlier
  * ones. The comparisons are such that NAN is a fault. */
 static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
@@ -188,14 +183,15 @@ static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size
     BRC_TRY(brc_facets_cell(ctx, f, cell, c));
     BRC_TRY(brc_edges_find(ctx, edges, c->n_faces, c->first, c->loop));
     const char *fault = NULL;
-    double closure = cell_closure(f, cell), size = cbrt(f->volume[cell]);
+    bool has_reversed;
+    double closure = cell_closure(f, cell, &has_reversed), size = cbrt(f->volume[cell]);
     if (!(f->volume[cell] > 0))
         fault = "has no volume";
     else if (!is_closed(c, edges))
         fault = "is not a closed body: an edge has not exactly two facets";
     else if (!(closure <= fmax(closure_limit, digits_margin * f->precision / size)))
         fault = "is not closed: its facets' areas do not balance";
-    else if (has_reversed_facet(f, cell))
+    else if (has_reversed)
         fault = "has a facet turned inside out";
     else if (!is_convex(f, c, size))
         fault = "is not convex";

@@ -46,18 +46,14 @@ struct packing {
     struct brc_pool pool; /* owns the arrays but for x and radius, which are the result */
 };
 
-/* Mean of d^3 over uniform d: (max^4 - min^4) / (4 (max - min)). */
-static double mean_cube(double low, double high)
-{
-    return (low * low + high * high) * (low + high) / 4;
-}
-
 /* By the mean volume of a sphere, before one is made: what cannot be packed is refused at once and
  * not after minutes of relaxing. */
 static int choose_count(struct brc_context *ctx, const struct brc_specimen_params *s,
                         double domain_volume, size_t *n)
 {
-    double mean = BRC_PI / 6 * mean_cube(s->diameter_min, s->diameter_max);
+    /* mean of d^3 over uniform d: (high^4 - low^4) / (4 (high - low)) */
+    double low = s->diameter_min, high = s->diameter_max;
+    double mean = BRC_PI / 6 * ((low * low + high * high) * (low + high) / 4);
     double count = s->count > 0 ? s->count : floor(s->solid_fraction * domain_volume / mean + 0.5);
     double most = fmin(floor(MAX_FRACTION * domain_volume / mean), BRC_MAX_GRAINS);
     if (s->diameter_min > s->diameter_max)
@@ -97,15 +93,9 @@ static bool is_inside(const struct brc_convex *domain, const double x[3], double
     return true;
 }
 
-/* In the box around the domain; those outside of the domain are drawn again. */
-static void random_point(gsl_rng *rng, const double low[3], const double high[3], double x[3])
-{
-    for (int k = 0; k < 3; k++)
-        x[k] = low[k] + (high[k] - low[k]) * gsl_rng_uniform(rng);
-}
-
-/* Uniform places inside the domain, the wall at least half of a radius away. Overlaps at half
- * radius (8 % of the volume is filled then) are left to the relaxation that follows at once. */
+/* Uniform places inside the domain, the wall at least half of a radius away; places of the box
+ * around it that are not are drawn again. Overlaps at half radius (8 % of the volume is filled
+ * then) are left to the relaxation that follows at once. */
 static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
                   const struct brc_specimen_params *s)
 {
@@ -118,7 +108,8 @@ static int insert(struct brc_context *ctx, struct packing *p, gsl_rng *rng,
         p->radius[i] = d / 2;
         int tries = 0;
         do
-            random_point(rng, low, high, p->x[i]);
+            for (int k = 0; k < 3; k++)
+                p->x[i][k] = low[k] + (high[k] - low[k]) * gsl_rng_uniform(rng);
         while (!is_inside(p->domain, p->x[i], d / 4) && ++tries < MAX_TRIES);
         if (tries == MAX_TRIES)
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
@@ -246,13 +237,6 @@ static int check_packing(struct brc_context *ctx, const struct packing *p, doubl
     return 0;
 }
 
-/* How far the relaxation is, by the logarithm of the ratio that it is to bring down: a damped pack
- * loses about a constant part of it in each step. */
-static double part_at_rest(double ratio, double rest)
-{
-    return fmin(fmax(log(ratio) / log(rest), 0), 1);
-}
-
 /* Grows the spheres and relaxes them until they rest, and longer while a cell lacks its centre:
  * then rest is asked for ten times as strictly, until it is as strict as is of any use. */
 static int grow(struct brc_context *ctx, struct packing *p)
@@ -271,7 +255,8 @@ static int grow(struct brc_context *ctx, struct packing *p)
         if (ratio <= rest)
             rest /= 10;
         BRC_TRY(relax(ctx, p, &ratio));
-        done = fmax(done, part_at_rest(ratio, rest));
+        /* a damped pack loses about a constant part of the ratio in each step */
+        done = fmax(done, fmin(log(ratio) / log(rest), 1));
         brc_work_update(&p->work, 0.5 + 0.5 * done);
     }
     return check_packing(ctx, p, ratio);

@@ -10,6 +10,7 @@
 #include "common/specimen/tess_cgal.h"
 #include "common/geometry/vec.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Lengths in units of the mean cell size. Vertices nearer than merge_length are one, vertices
@@ -79,6 +80,7 @@ struct work {
 static int name_missing(struct brc_context *ctx, const struct work *w)
 {
     const double *radius = w->radius;
+    char why[80] = " inside the domain";
     for (size_t i = 0; i < w->n; i++) {
         int32_t j = w->hider[i];
         double x[3];
@@ -88,15 +90,13 @@ static int name_missing(struct brc_context *ctx, const struct work *w)
                      "seeds %zu and %d coincide at (%g, %g, %g) m; move one of them", i, j, x[0],
                      x[1], x[2]);
         if (j >= 0)
+            snprintf(why, sizeof why, ": sphere %d, radius %g m, takes its place", j,
+                     radius ? radius[j] : 0);
+        if (j >= 0 || w->is_empty[i])
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
-                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell: sphere %d, radius "
-                     "%g m, takes its place; relax the packing on or use more equal radii",
-                     i, x[0], x[1], x[2], radius ? radius[i] : 0, j, radius ? radius[j] : 0);
-        if (w->is_empty[i])
-            BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
-                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell inside the domain; "
-                     "relax the packing on or use more equal radii",
-                     i, x[0], x[1], x[2], radius ? radius[i] : 0);
+                     "sphere %zu at (%g, %g, %g) m, radius %g m, has no cell%s; relax the packing "
+                     "on or use more equal radii",
+                     i, x[0], x[1], x[2], radius ? radius[i] : 0, why);
     }
     return 0;
 }

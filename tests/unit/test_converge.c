@@ -30,7 +30,7 @@ static void test_error(void **state)
 static void test_moments(void **state)
 {
     (void)state;
-    const double odd[] = {3, 1, 2}, even[] = {4, 1, 3, 2};
+    double odd[] = {3, 1, 2}, even[] = {4, 1, 3, 2};
     CHECK_NEAR(brc_converge_median(odd, 3), 2, 0, 0);
     CHECK_NEAR(brc_converge_median(even, 4), 2.5, 0, 0);
     assert_true(isnan(brc_converge_median(odd, 0)));
