@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Unconfined compression along z between two platens with friction. */
 #include "common/engine/sim.h"
-#include "common/rigs/elastic_moduli.h"
+#include "common/rigs/crack_stress.h"
 #include "common/rigs/two_platens.h"
 
 static int place(struct brc_sim *sim)
@@ -14,7 +14,7 @@ const struct brc_rig_type brc_rig_compression = {
     .name = "compression",
     .meaning = "unconfined compression along z",
     .keys = BRC_LOADING_KEYS BRC_CURVE_KEYS BRC_MODULI_KEYS "friction",
-    BRC_CORE_RESULTS,
+    BRC_COMPRESSION_RESULTS,
     BRC_TWO_PLATENS,
     .check = brc_two_platens_check_closing,
     .place = place};

@@ -10,7 +10,8 @@
 #include <math.h>
 
 static const char no_row[] = "no row of the curve: fewer steps than test.sample_steps",
-                  no_load[] = "no load in the sense of the test";
+                  no_load[] = "no load in the sense of the test",
+                  no_break[] = "nothing had broken at the peak";
 const char brc_curve_no_peak[] =
     "no peak: the load was still rising, or above 0.95 of the largest, at the end";
 /* A largest load is a peak once the load has been below this part of it: a run that ends on the way
@@ -71,6 +72,15 @@ double brc_curve_unbalanced_max(const struct brc_sim *sim)
     return largest;
 }
 
+size_t brc_curve_peak_row(const struct brc_rig *rig)
+{
+    const struct brc_curve *c = &rig->curve;
+    size_t i = 0;
+    while (i < c->table.n && c->force[i] != rig->force_peak)
+        i++;
+    return i;
+}
+
 const char *brc_curve_why_no_peak(const struct brc_rig *rig)
 {
     const struct brc_curve *c = &rig->curve;
@@ -79,13 +89,34 @@ const char *brc_curve_why_no_peak(const struct brc_rig *rig)
         return no_row;
     if (!(peak > 0))
         return no_load;
-    size_t i = 0;
-    while (i < c->table.n && c->force[i] != peak)
-        i++;
-    for (; i < c->table.n; i++)
+    for (size_t i = brc_curve_peak_row(rig); i < c->table.n; i++)
         if (c->force[i] < FALLEN * peak)
             return NULL;
     return brc_curve_no_peak;
+}
+
+/* Of the area that is broken at the peak, not of the whole that could break: a part of what the
+ * specimen itself needs to fail, so that a first weak bond is no onset, and tests compare. */
+static const double FIRST_PART = 0.01;
+
+static struct brc_measured first_broken(const struct brc_sim *sim, const char *no_peak)
+{
+    const struct brc_curve *c = &sim->rig.curve;
+    const struct brc_events *e = &sim->events;
+    if (no_peak)
+        return (struct brc_measured){NAN, no_peak};
+    int64_t last = c->step[brc_curve_peak_row(&sim->rig)];
+    double area = 0, sum = 0;
+    size_t k = 0, row = 0;
+    for (; k < e->table.n && e->step[k] <= last; k++)
+        area += e->area[k];
+    if (k == 0)
+        return (struct brc_measured){NAN, no_break};
+    for (k = 0; k < e->table.n && (sum += e->area[k]) < FIRST_PART * area; k++)
+        ;
+    while (c->step[row] < e->step[k]) /* ends at the peak's row */
+        row++;
+    return (struct brc_measured){c->stress[row], NULL};
 }
 
 void brc_curve_peak_results(const struct brc_sim *sim, struct brc_measured *out)
@@ -93,6 +124,7 @@ void brc_curve_peak_results(const struct brc_sim *sim, struct brc_measured *out)
     const struct brc_rig *rig = &sim->rig;
     const char *note = brc_curve_why_no_peak(rig);
     const double value[] = {rig->force_peak / rig->section, rig->strain_peak, rig->force_peak};
-    for (int i = 0; i < BRC_N_PEAK_RESULTS; i++)
+    for (int i = 0; i < 3; i++)
         out[i] = (struct brc_measured){note ? NAN : value[i], note};
+    out[3] = first_broken(sim, note);
 }

@@ -7,6 +7,7 @@
 #include "common/engine/sim.h"
 
 #include <gsl/gsl_fit.h>
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 
 static const char no_gauge[] = "fewer than 4 grains in the gauge, or all close to one place along "
@@ -14,13 +15,11 @@ static const char no_gauge[] = "fewer than 4 grains in the gauge, or all close t
                   no_lateral[] = "fewer than 4 grains in the gauge, or all close to one place "
                                  "across the load",
                   no_rows[] = "fewer than 2 rows of the curve from test.modulus_low to "
-                              "test.modulus_high: lower test.sample_steps or load more slowly";
+                              "test.modulus_high: lower test.sample_steps or load more slowly",
+                  two_rows[] = "only 2 rows of the curve from test.modulus_low to "
+                               "test.modulus_high: any line fits them";
 
-const struct brc_quantity brc_core_quantities[BRC_N_CORE_RESULTS] = {
-    {"E", "Pa", "Young's modulus by the gauge strain"},
-    {"nu", "1", "Poisson's ratio by the gauge strains"},
-    {"E_platen", "Pa", "modulus by the platen strain"},
-    BRC_PEAK_QUANTITIES};
+const struct brc_quantity brc_core_quantities[BRC_N_CORE_RESULTS] = {BRC_CORE_QUANTITIES};
 
 int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *t)
 {
@@ -45,11 +44,17 @@ static void modulus_rows(const struct brc_rig *rig, size_t *first, size_t *end)
     *end = i;
 }
 
-static double slope(const double *x, const double *y, size_t n)
+/* A line through rows, and the part of the variance that it explains: 1 of points on a line, and of
+ * points that are all at one height, where there is nothing to explain. */
+struct fit {
+    double slope, r2;
+};
+
+static struct fit fit_line(const double *x, const double *y, size_t n)
 {
-    double c0, c1, cov00, cov01, cov11, chi2;
-    gsl_fit_linear(x, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
-    return c1;
+    double c0, c1, cov00, cov01, cov11, left, all = gsl_stats_tss(y, 1, n);
+    gsl_fit_linear(x, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &left);
+    return (struct fit){c1, all > 0 ? 1 - left / all : 1};
 }
 
 static struct brc_measured measured(double value, const char *note)
@@ -72,10 +77,16 @@ void brc_core_results(const struct brc_sim *sim, struct brc_measured *out)
     const char *axial = rows ? rows : is_gauged ? NULL : no_gauge;
     const char *lateral = axial ? axial : is_wide ? NULL : no_lateral;
     const double *stress = c->stress + first, *strain = c->strain_axial + first;
-    size_t k = rows ? 0 : end - first;
-    out[0] = measured(axial ? NAN : slope(strain, stress, k), axial); /* eq:gt12:25 */
-    out[1] = measured(lateral ? NAN : -slope(strain, c->strain_lateral + first, k),
-                      lateral); /* eq:gt12:24 */
-    out[2] = measured(rows ? NAN : slope(c->strain + first, stress, k), rows);
+    const char *few = end - first == 2 ? two_rows : NULL;
+    size_t n = end - first;
+    const struct fit none = {NAN, NAN};
+    struct fit e = axial ? none : fit_line(strain, stress, n);
+    struct fit nu = lateral ? none : fit_line(strain, c->strain_lateral + first, n);
+    struct fit platen = rows ? none : fit_line(c->strain + first, stress, n);
+    out[0] = measured(e.slope, axial);     /* eq:gt12:25 */
+    out[1] = measured(-nu.slope, lateral); /* eq:gt12:24 */
+    out[2] = measured(platen.slope, rows);
+    out[3] = measured(e.r2, axial ? axial : few);
+    out[4] = measured(nu.r2, lateral ? lateral : few);
     brc_curve_peak_results(sim, out + BRC_N_MODULI);
 }

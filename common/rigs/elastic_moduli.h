@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Elastic moduli: least squares over the rows of the curve between two parts of the peak. */
+/* Elastic moduli: least squares over the rows of the curve between two parts of the peak, and
+ * how well they fit. */
 #ifndef BRC_ELASTIC_MODULI_H
 #define BRC_ELASTIC_MODULI_H
 
@@ -7,8 +8,14 @@
 
 /* Shared keys that moduli use. */
 #define BRC_MODULI_KEYS "modulus_low modulus_high "
-/* The same for all loads along a core's axis: moduli, then the peak. */
-enum { BRC_N_MODULI = 3, BRC_N_CORE_RESULTS = BRC_N_MODULI + BRC_N_PEAK_RESULTS };
+/* The same for all loads along a core's axis: moduli and how well lines fit them, then the peak. */
+#define BRC_CORE_QUANTITIES                                                  \
+    {"E", "Pa", "Young's modulus by the gauge strain"},                      \
+        {"nu", "1", "Poisson's ratio by the gauge strains"},                 \
+        {"E_platen", "Pa", "modulus by the platen strain"},                  \
+        {"E_r2", "1", "part of the variance of the stress that E explains"}, \
+        {"nu_r2", "1", "part of that of the lateral strain that nu explains"}, BRC_PEAK_QUANTITIES
+enum { BRC_N_MODULI = 5, BRC_N_CORE_RESULTS = BRC_N_MODULI + BRC_N_PEAK_RESULTS };
 extern const struct brc_quantity brc_core_quantities[BRC_N_CORE_RESULTS];
 void brc_core_results(const struct brc_sim *sim, struct brc_measured *out);
 /* To stand in a test's table. */

@@ -49,13 +49,16 @@ static void a_load_that_rises_has_no_strength(void **state)
     load(f, elastic, pull, 1000);
     for (int i = 0; i < 3; i++)
         check_missing(f, of_the_peak[i], "the load was still rising");
+    check_missing(f, "ci_broken", "the load was still rising");
     check_measured(f, "E");
     check_measured(f, "nu");
+    CHECK_BETWEEN(result(f, "E_r2").value, 0.99, 1); /* elastic */
     assert_true(f->sim.rig.force_peak > 0);
     load(f, weak, pull, 1000);
     assert_true(f->sim.events.table.n > 0);
     for (int i = 0; i < 3; i++)
         check_measured(f, of_the_peak[i]);
+    check_measured(f, "ci_broken");
     fixture_grid(f, 3, 3, 3, 0.01, 0.7);
     load(f, elastic, "kind: brazilian; loading: fixed; rate: 1e-6 1/s; strain_max: 1e-4", 1000);
     check_missing(f, "S", "the load was still rising");
@@ -68,8 +71,10 @@ static void without_a_row_nothing_is_measured(void **state)
     fixture_grid(f, 3, 3, 4, 0.01, 0.7);
     load(f, elastic, "kind: tension; loading: fixed; rate: 1e-6 1/s; sample_steps: 100", 99);
     assert_int_equal(f->sim.rig.curve.table.n, 0);
-    const char *const names[] = {"E", "nu", "E_platen", "strength", "strain_at_peak", "force_peak"};
-    for (int i = 0; i < 6; i++)
+    const char *const names[] = {"E",        "nu",       "E_platen",       "E_r2",
+                                 "nu_r2",    "strength", "strain_at_peak", "force_peak",
+                                 "ci_broken"};
+    for (int i = 0; i < 9; i++)
         check_missing(f, names[i], "fewer steps than test.sample_steps");
 }
 
@@ -94,6 +99,77 @@ static void moduli_need_a_gauge(void **state)
     fixture_grid(f, 1, 1, 4, 0.01, 0); /* two grains */
     load(f, elastic, pull, 1000);
     check_missing(f, "E", "fewer than 4 grains in the gauge");
+}
+
+/* A curve that is made up: `rows` rows of the way up lie between modulus_low and modulus_high. */
+static void make_curve(struct fixture *f, int rows)
+{
+    struct brc_rig *rig = &f->sim.rig;
+    const double low = rig->params.modulus_low, high = rig->params.modulus_high;
+    for (int i = 0; i < rows + 3; i++) {
+        size_t k;
+        CHECK_OK(&f->ctx, brc_rig_add_row(&f->ctx, rig, &k));
+        double part = low + (i + 0.5) * (high - low) / rows; /* of the peak */
+        part = i < rows ? part : i < rows + 2 ? 0.5 * (i - rows + 1) : 0.2;
+        rig->curve.step[k] = 10 * (i + 1);
+        rig->curve.force[k] = part;
+        rig->curve.stress[k] = part * 1e6;
+        rig->curve.strain[k] = rig->curve.strain_axial[k] = 1e-4 * (part + (i == 1 ? 0.01 : 0));
+        rig->curve.strain_lateral[k] = -2e-5 * part;
+    }
+    rig->force_peak = 1;
+    rig->strain_peak = 1e-4;
+    memset(rig->has_gauge, true, sizeof rig->has_gauge);
+}
+
+/* R2 of points of which one is off the line, by the definition; a line through two points is none
+ * that rows have shown. */
+static void moduli_say_how_well_they_fit(void **state)
+{
+    struct fixture *f = *state;
+    fixture_grid(f, 2, 2, 2, 0.01, 0);
+    fixture_sim(f, brc_registry_find("vgcm"), elastic, "", "");
+    make_curve(f, 2);
+    check_measured(f, "E");
+    check_measured(f, "nu");
+    check_missing(f, "E_r2", "only 2 rows");
+    check_missing(f, "nu_r2", "only 2 rows");
+    fixture_sim(f, brc_registry_find("vgcm"), elastic, "", "");
+    make_curve(f, 4);
+    const struct brc_curve *c = &f->sim.rig.curve;
+    double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+    for (int i = 0; i < 4; i++) {
+        x += c->strain_axial[i] / 4;
+        y += c->stress[i] / 4;
+    }
+    for (int i = 0; i < 4; i++) {
+        xx += (c->strain_axial[i] - x) * (c->strain_axial[i] - x);
+        yy += (c->stress[i] - y) * (c->stress[i] - y);
+        xy += (c->strain_axial[i] - x) * (c->stress[i] - y);
+    }
+    CHECK_NEAR(result(f, "E").value, xy / xx, 0, 1e-9);
+    CHECK_NEAR(result(f, "E_r2").value, xy * xy / (xx * yy), 0, 1e-9);
+    assert_true(result(f, "E_r2").value < 0.99);
+}
+
+/* Cracks of which the first is smaller than a hundredth of what is broken at the peak; one that
+ * breaks behind the peak does not count. */
+static void the_first_percent_of_the_cracks_has_a_stress(void **state)
+{
+    struct fixture *f = *state;
+    const int64_t step[] = {15, 25, 45, 58, 65};
+    const double area[] = {0.009, 0.002, 0.49, 0.5, 100};
+    fixture_grid(f, 2, 2, 2, 0.01, 0);
+    fixture_sim(f, brc_registry_find("vgcm"), elastic, "", "");
+    make_curve(f, 4);
+    check_missing(f, "ci_broken", "nothing had broken at the peak");
+    for (int i = 0; i < 5; i++) {
+        const struct brc_event event = {.a = i, .b = i + 1, .n = {0, 0, 1}, .area = area[i]};
+        brc_events_add(&f->ctx, &f->sim.events, step[i], &event);
+    }
+    const struct brc_curve *c = &f->sim.rig.curve;
+    assert_true(c->step[2] == 30 && c->force[5] == 1);
+    CHECK_NEAR(result(f, "ci_broken").value, c->stress[2], 0, 1e-12);
 }
 
 /* `stop_drop: 0` is never, also when the specimen pulls the platens together. */
@@ -183,6 +259,8 @@ int main(void)
         FIXTURE_TEST(a_load_that_rises_has_no_strength),
         FIXTURE_TEST(without_a_row_nothing_is_measured),
         FIXTURE_TEST(moduli_need_a_gauge),
+        FIXTURE_TEST(moduli_say_how_well_they_fit),
+        FIXTURE_TEST(the_first_percent_of_the_cracks_has_a_stress),
         FIXTURE_TEST(a_test_ends_at_no_drop),
         FIXTURE_TEST(a_grip_holds_end_grains_alone),
         FIXTURE_TEST(platens_that_meet_end_the_run),
