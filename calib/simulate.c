@@ -64,10 +64,8 @@ static int run_trial(struct brc_context *ctx, struct calib_simulator *s,
     struct brc_progress quiet;
     int test = trial->test;
     BRC_TRY(brc_folder_path(ctx, s->dir, brc_rigs_at(test)->name, dir));
-    if (!s->has_specimen[test]) {
+    if (s->specimen[test].facets.n_cells == 0)
         BRC_TRY(brc_specimen_create(ctx, &run_case->specimen, &s->specimen[test]));
-        s->has_specimen[test] = true;
-    }
     brc_progress_begin(&quiet, stderr, &trial->model, 1, true);
     struct brc_run_options options = {.run_case = run_case,
                                       .model = model,
@@ -105,9 +103,6 @@ int calib_simulate(struct brc_context *ctx, void *user, const struct calib_trial
 
 void calib_simulator_free(struct calib_simulator *s)
 {
-    for (int i = 0; i < BRC_MAX_RIGS; i++) {
-        if (s->has_specimen[i])
-            brc_specimen_free(&s->specimen[i]);
-        s->has_specimen[i] = false;
-    }
+    for (int i = 0; i < BRC_MAX_RIGS; i++)
+        brc_specimen_free(&s->specimen[i]);
 }

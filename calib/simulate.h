@@ -14,9 +14,8 @@ enum { CALIB_MAX_VARIABLES = 32 };
 struct calib_simulator {
     const char *path[BRC_MAX_RIGS]; /* case file by the number of its test; NULL: no such test */
     const char *dir; /* results of the latest runs, one folder a test; without results before */
-    struct brc_specimen specimen[BRC_MAX_RIGS];
-    bool has_specimen[BRC_MAX_RIGS];
-    bool has_run[BRC_MAX_RIGS]; /* its folder holds results of this simulator */
+    struct brc_specimen specimen[BRC_MAX_RIGS]; /* without cells: not made yet */
+    bool has_run[BRC_MAX_RIGS];                 /* its folder holds results of this simulator */
 };
 
 /* To be used as calib_runner.run with a struct calib_simulator as user. Fails as the run does, and

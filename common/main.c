@@ -37,7 +37,8 @@ struct options {
     bool is_quiet, is_help;
     const char *program;
     /* The command and its words without flags, for the command that goes on: moved to the front of
-     * argv as they are read. */
+     * argv as they are read. A program may change argv, so that no copy of
+     * it, and no bound, is needed. */
     char **kept;
     int n_kept;
 };
@@ -71,6 +72,7 @@ static int start_single(struct brc_context *ctx)
     return 0;
 }
 
+/* The option wins over the case, so that one case file serves all models. */
 static const char *model_of(const struct options *o)
 {
     return o->ladder.model ? o->ladder.model : o->ladder.run.run_case->file.head.model;
@@ -121,6 +123,8 @@ static int compare_models(struct brc_context *ctx, const struct options *o)
     return code;
 }
 
+/* A power of two, as rungs are a factor of two apart and one of them must be the case as written.
+ */
 static int run_ladder(struct brc_context *ctx, const struct options *o)
 {
     int refine = o->ladder.refine;
@@ -131,6 +135,8 @@ static int run_ladder(struct brc_context *ctx, const struct options *o)
     return brc_converge(ctx, &o->ladder);
 }
 
+/* From the file alone, so that one of another version, or one whose case is gone, can still be
+ * looked at. */
 static int act_info(struct brc_context *ctx, const struct options *o)
 {
     return brc_info_print(ctx, stdout, o->operand);
@@ -172,6 +178,8 @@ static int act_params(struct brc_context *ctx, const struct options *o)
     return 0;
 }
 
+/* With the papers that they are from, by which readers know them; the names are no more than keys
+ * of cases. */
 static int act_models(struct brc_context *ctx, const struct options *o)
 {
     (void)ctx, (void)o;
@@ -180,6 +188,8 @@ static int act_models(struct brc_context *ctx, const struct options *o)
     return 0;
 }
 
+/* As the tests declare themselves: one that is added stands here, with its keys and what it
+ * measures, without a line of this file. */
 static int act_tests(struct brc_context *ctx, const struct options *o)
 {
     (void)ctx, (void)o;
@@ -241,12 +251,14 @@ enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
 struct command {
     const char *name;
-    char letter; /* in option.commands */
+    char letter; /* in option.commands: a list of names a row would leave no room for its help */
     const char *operand, *does, *example, *more;
     bool has_case; /* the operand is one, and is read before */
+    /* One table of both kinds, so that neither help nor completion has to know which is which. */
     int (*act)(struct brc_context *ctx, const struct options *o);
 };
 
+/* Examples can be pasted where the sources are, as they name the cases that come with them. */
 static const struct command commands[] = {
     {"run", 'R', "CASE", "run one model through the test of a case file",
      "breccia run cases/demo_tension.yaml --model vgcm -o results/first --set specimen.seed=2",
@@ -360,7 +372,10 @@ static int fail_option(struct brc_context *ctx, const struct command *c, const c
              *hint ? "" : "; see breccia COMMAND --help");
 }
 
-/* Puts the value, NULL for a flag, where the table says. Of an option that is given twice the last
+/* Numbers are bounded by the table: what a user types is refused here, with the name of the option,
+ * and no other room has to judge it again.
+ *
+ * Puts the value, NULL for a flag, where the table says. Of an option that is given twice the last
  * value counts, but for --set, of which each is one more. */
 static int read_option(struct brc_context *ctx, struct options *o, const struct option *option,
                        const char *value)
@@ -417,7 +432,9 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
 
 /* ---- the program --------------------------------------------------------------------------- */
 
-/* Reads the case for a command, and tells in its message where in the case a failure comes from.
+/* Here and not in each command, so that all name folders and tell of the case in the same way.
+ *
+ * Reads the case for a command, and tells in its message where in the case a failure comes from.
  * Results go where the user says, else by the names of the case and, for a run, of its model. A
  * path that is cut here is refused later, as too long for any file in it. */
 static int act_on_case(struct brc_context *ctx, struct options *o, const struct command *c)
@@ -450,6 +467,7 @@ static int act(struct brc_context *ctx, const struct command *c, char **words, s
     o->n_kept = 1; /* the command itself */
     for (int i = 1; words[i]; i++)
         BRC_TRY(read_word(ctx, c, words, &i, o));
+    /* by the context, from which the processes of a comparison or a ladder have it, too */
     ctx->quiet = o->is_quiet;
     if (o->is_help) {
         print_command_help(stdout, c);
@@ -463,7 +481,9 @@ static int act(struct brc_context *ctx, const struct command *c, char **words, s
     return c->has_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
 }
 
-/* Without a word the help goes to standard error, with the status of a bad command line: a script
+/* --help and --version are no rows of the table: they take neither operand nor options.
+ *
+ * Without a word the help goes to standard error, with the status of a bad command line: a script
  * that has lost its arguments shall notice. */
 static int act_first(struct brc_context *ctx, char **words, struct options *o)
 {

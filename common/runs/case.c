@@ -84,6 +84,8 @@ static int check_indents(struct brc_context *ctx, const struct brc_case *run_cas
     return 0;
 }
 
+/* A key that is unknown or has a bad value comes before one that does not apply: whether a key
+ * applies is decided by the values of others. */
 static int check_sections(struct brc_context *ctx, struct brc_case *run_case)
 {
     const char *names[BRC_CASE_MAX_SECTIONS];
@@ -159,6 +161,8 @@ static int repeat_override(struct brc_context *ctx, struct brc_casefile *c,
     return code;
 }
 
+/* From the text again and not from the structs: what further overrides make meaningless, and the
+ * files that they name, must be judged as in a case that had them from the start. */
 int brc_case_change(struct brc_context *ctx, const struct brc_case *run_case,
                     const char *const *overrides, int n, struct brc_case *out)
 {
@@ -190,27 +194,12 @@ void brc_case_free(struct brc_case *run_case)
 
 /* ---- places in messages --------------------------------------------------------------------- */
 
-/* Whether text starts with "section.key"; key gets the key. */
-static bool starts_with_key(const char *text, const struct brc_case_section *s,
-                            char key[BRC_CASEFILE_KEY_SIZE])
-{
-    size_t n = strlen(s->name);
-    if (strncmp(text, s->name, n) != 0 || text[n] != '.')
-        return false;
-    size_t length = strspn(text + n + 1, "abcdefghijklmnopqrstuvwxyz0123456789_");
-    snprintf(key, BRC_CASEFILE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
-    return brc_params_find(s->list, key) != NULL;
-}
-
 /* The first section.key in text, at the beginning of a word; false when there is none. */
 static bool find_key(const char *text, struct brc_case_section *s, char key[BRC_CASEFILE_KEY_SIZE])
 {
-    for (const char *c = text; *c; c++) {
-        bool is_start = c == text || strchr(" '(", c[-1]);
-        for (int i = 0; is_start && brc_case_section(NULL, i, s); i++)
-            if (starts_with_key(c, s, key))
-                return true;
-    }
+    for (const char *c = text; *c; c++)
+        if ((c == text || strchr(" '(", c[-1])) && brc_case_key_at(c, s, key))
+            return true;
     return false;
 }
 

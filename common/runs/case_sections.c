@@ -7,6 +7,7 @@
 
 #include "common/runs/case.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Four common sections, then the models', then those of tests that have keys of their own. */
@@ -48,6 +49,20 @@ bool brc_case_find_section(const struct brc_case *run_case, const char *name,
     return false;
 }
 
+/* Whole names alone: of two sections one may begin with the name of the other. */
+bool brc_case_key_at(const char *text, struct brc_case_section *s, char key[BRC_CASEFILE_KEY_SIZE])
+{
+    for (int i = 0; brc_case_section(NULL, i, s); i++) {
+        size_t n = strlen(s->name);
+        if (strncmp(text, s->name, n) != 0 || text[n] != '.')
+            continue;
+        size_t length = strspn(text + n + 1, "abcdefghijklmnopqrstuvwxyz0123456789_");
+        snprintf(key, BRC_CASEFILE_KEY_SIZE, "%.*s", (int)length, text + n + 1);
+        return brc_params_find(s->list, key) != NULL;
+    }
+    return false;
+}
+
 /* By name and not by the place in a registry: a model that is not registered, as those of tests,
  * has no place there, and a test without keys of its own has no section. */
 const void *brc_case_values(const struct brc_case *run_case, const char *section)
@@ -68,6 +83,8 @@ int brc_case_model(struct brc_context *ctx, const char *name, const struct brc_m
     BRC_FAIL(ctx, BRC_ERR_INPUT, "unknown model '%.60s'; there are: %s", name, all);
 }
 
+/* In the order of the case's list, which the columns of tables and the panels of pictures follow.
+ */
 int brc_case_models(struct brc_context *ctx, const struct brc_case *run_case,
                     const struct brc_model **model, int cap, int *n)
 {

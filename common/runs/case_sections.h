@@ -5,7 +5,7 @@
 #ifndef BRC_CASE_SECTIONS_H
 #define BRC_CASE_SECTIONS_H
 
-#include "common/input/params.h"
+#include "common/input/casefile.h"
 #include "common/rigs/rigs.h"
 
 struct brc_case;
@@ -22,6 +22,9 @@ bool brc_case_section(const struct brc_case *run_case, int i, struct brc_case_se
 /* By name; false, and a section without a list, where there is none. */
 bool brc_case_find_section(const struct brc_case *run_case, const char *name,
                            struct brc_case_section *s);
+/* The section and key that text begins with as "section.key"; false where it does not. Messages and
+ * the texts of states name keys so. */
+bool brc_case_key_at(const char *text, struct brc_case_section *s, char key[BRC_CASEFILE_KEY_SIZE]);
 /* The values of a section alone; NULL where there is none, as of a test without keys of its own. */
 const void *brc_case_values(const struct brc_case *run_case, const char *section);
 

@@ -53,16 +53,10 @@ char *brc_case_text(struct brc_context *ctx, const struct brc_case *run_case,
 /* Whether the "section.key" that the line begins with may differ between the parts of one run. */
 static bool may_change(const char *line)
 {
-    char section[BRC_CASEFILE_KEY_SIZE], key[BRC_CASEFILE_KEY_SIZE];
+    char key[BRC_CASEFILE_KEY_SIZE];
     struct brc_case_section s;
-    size_t dot = strcspn(line, ". \n");
-    if (line[dot] != '.')
-        return false;
-    snprintf(section, sizeof section, "%.*s", (int)dot, line);
-    snprintf(key, sizeof key, "%.*s", (int)strcspn(line + dot + 1, " "), line + dot + 1);
-    const struct brc_param *p =
-        brc_case_find_section(NULL, section, &s) ? brc_params_find(s.list, key) : NULL;
-    return p && p->flags & BRC_PARAM_MAY_CHANGE;
+    return brc_case_key_at(line, &s, key) &&
+           brc_params_find(s.list, key)->flags & BRC_PARAM_MAY_CHANGE;
 }
 
 /* Line by line in step, as both texts come from the same lists; other lists are of another version.

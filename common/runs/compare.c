@@ -98,6 +98,7 @@ static int run_all(struct compare *c)
     return code;
 }
 
+/* The user's wish, whether it came before the first step or after it. */
 static bool is_interrupt(int code)
 {
     return code == BRC_ERR_INTERRUPTED || code == BRC_ERR_NOT_BEGUN;

@@ -10,6 +10,8 @@
 
 enum { LABEL_WIDTH = 26, COLUMN_WIDTH = 16 };
 
+/* The prefixes that rock mechanics uses, and no others: a strength is in MPa also where it is
+ * small. */
 struct brc_shown brc_compare_unit(const char *name, const char *unit, double largest)
 {
     if (strcmp(unit, "Pa") == 0)
@@ -32,6 +34,8 @@ static void put_label(FILE *out, const char *name, const char *unit)
     fprintf(out, "%-*s", LABEL_WIDTH, label);
 }
 
+/* Four digits whatever the size, rather than as many places: values are compared by their first
+ * digits, and small ones would lose them. */
 const char *brc_compare_digits(double value, char text[BRC_DIGITS_SIZE])
 {
     double size = fabs(value);
@@ -148,6 +152,8 @@ static void put_notes(FILE *out, const struct brc_summary *s)
     }
 }
 
+/* Results first, then what they cost; what makes one doubtful stands below in words, for which no
+ * column has room. */
 void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int n)
 {
     int width = LABEL_WIDTH + n * COLUMN_WIDTH;

@@ -111,6 +111,7 @@ static int choose_models(struct ladder *l)
     return 0;
 }
 
+/* On the specimen of the case alone: those of other seeds are made by their runs, side by side. */
 static int try_models(struct ladder *l)
 {
     struct brc_specimen specimen = {0};

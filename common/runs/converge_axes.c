@@ -30,10 +30,8 @@ struct ladder {
 
 /* Overrides as the command line has them: a setting can be repeated by hand from its line in the
  * record. */
-static void add_line(struct brc_converge_setting *s, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void add_line(struct brc_converge_setting *s, const char *format, ...)
+static void __attribute__((format(printf, 2, 3)))
+add_line(struct brc_converge_setting *s, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -41,6 +39,8 @@ static void add_line(struct brc_converge_setting *s, const char *format, ...)
     va_end(args);
 }
 
+/* Specimens have the seed of the case and those that follow it: a ladder that is repeated with more
+ * of them finds its earlier runs in the record. */
 int brc_converge_case(struct brc_context *ctx, const struct brc_case *run_case,
                       const struct brc_converge_setting *s, int i, struct brc_case *out)
 {
@@ -149,7 +149,6 @@ static bool put_target(struct brc_converge_setting *s, const struct brc_case *ru
     (void)run_case;
     add_line(s, "test.loading=adaptive");
     add_line(s, "test.target=%.9g", factor * m->test.target);
-    /* below the target of the case the smallest rate must not hold the rate up */
     if (factor < 1 && m->test.rate_min > 0)
         add_line(s, "test.rate_min=%.9g 1/s", factor * m->test.rate_min);
     label(s, "target", factor * m->test.target);
@@ -287,6 +286,8 @@ static int list_axes(struct brc_context *ctx, const struct brc_converge_study *s
     return 0;
 }
 
+/* A name that is none is an error that lists all: a ladder without the axis that was meant would
+ * take hours to show it. */
 int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_study *study,
                            struct brc_converge_axes *axes)
 {
@@ -329,6 +330,8 @@ static void put_reference(struct brc_converge_setting *s, const struct brc_conve
     snprintf(s->label, sizeof s->label, "loading x 1/%g step x %g", 1 / loading, step);
 }
 
+/* They lie at fixed places, by which report and table find them; so one that is out of range ends
+ * the ladder, while a rung of an axis would be left out. */
 int brc_converge_first_settings(struct brc_context *ctx, const struct brc_converge_options *options,
                                 struct brc_converge_model *m)
 {

@@ -109,6 +109,8 @@ static int read_text(struct brc_context *ctx, struct brc_converge_record *r, con
     return 0;
 }
 
+/* By its path and not from the stream that holds the lock: the reader of inputs bounds what it
+ * takes, and refuses what is no plain file. */
 static int read_old(struct brc_context *ctx, struct brc_converge_record *r, const char *header)
 {
     const struct brc_input in = {.path = r->path, .largest = BRC_INPUT_LARGEST, .is_plain = true};

@@ -77,6 +77,8 @@ static void fill_rung(struct brc_converge_report *r, int i)
         .cost = r->row[i].cpu_s};
 }
 
+/* The part of the loading is measured at the larger step, so that three settings give both parts.
+ */
 void brc_converge_report_make(const struct brc_converge_study *study, int model,
                               struct brc_converge_report *out)
 {

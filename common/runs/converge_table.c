@@ -223,6 +223,8 @@ static void put_csv_row(FILE *out, const struct brc_converge_report *r, int i)
     fprintf(out, ",%.6g\n", r->uncertainty);
 }
 
+/* All rows, those of the reference's uncertainty too: whoever filters can leave rows out, but not
+ * put them in. */
 int brc_converge_csv(struct brc_context *ctx, const struct brc_converge_study *study,
                      const struct brc_converge_report *report)
 {

@@ -285,6 +285,8 @@ static int load_specimen(struct brc_context *ctx, const char *path, struct loade
     return brc_specimen_create(ctx, &l->run_case.specimen, &l->specimen);
 }
 
+/* -o is judged when all is loaded: which files are inputs, and may not be replaced, is known by the
+ * case alone. */
 int brc_export_format(struct brc_context *ctx, const struct brc_export_options *options,
                       const char *format)
 {

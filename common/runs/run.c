@@ -75,10 +75,7 @@ static int replace_old(struct run *r)
 }
 
 /* The log is flushed line by line: it is what is left of a run that was killed. */
-static void log_line(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/* A line of the log. */
-static void log_line(struct run *r, const char *format, ...)
+static void __attribute__((format(printf, 2, 3))) log_line(struct run *r, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -345,6 +342,8 @@ static int write_tables(struct run *r)
     return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table, NULL);
 }
 
+/* The data of curves and cracks are written without plots, too: the folder can be drawn later, and
+ * a comparison draws its runs side by side from them. */
 static int draw(struct run *r)
 {
     const struct brc_case *run_case = r->options->run_case;

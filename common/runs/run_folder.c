@@ -175,6 +175,8 @@ static bool is_in_log(const char *dir)
     return is_found;
 }
 
+/* A case that stands there as it would be written needs no leave: to write the same bytes changes
+ * nothing, even where it is the file that is read. */
 int brc_run_check_case(struct brc_context *ctx, const char *dir, const struct brc_case *run_case,
                        const char *text, bool is_resumed)
 {

@@ -3,8 +3,8 @@
  * vertex, so two cells that share an edge get the same vertex, bit for bit, and no crack opens
  * between them.
  *
- * Facets that a cut shortens get a new loop at the end of the pool, and the old one stays as a gap:
- * loops never move while others are read, and the complex lives for one tessellation only. */
+ * A loop that grows goes to the end of the pool, and the old one stays as a gap: loops never move
+ * while others are read, and the complex lives for one tessellation only. */
 #include "common/specimen/cell_complex.h"
 
 #include "common/base/invariant.h"
@@ -68,6 +68,25 @@ int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex
     return 0;
 }
 
+/* What a facet leaves behind as its loop grows is not used again: a list of gaps would be kept for
+ * memory that is freed when the tessellation is made. */
+int brc_cell_complex_set_loop(struct brc_context *ctx, struct brc_cell_complex *c, size_t f,
+                              const int32_t *loop, int32_t n)
+{
+    struct brc_cell_complex_facet *facet = &c->facet[f];
+    if (n > facet->n) {
+        BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + (size_t)n);
+        facet->first = c->n_loop;
+        c->n_loop += (size_t)n;
+    }
+    facet->n = n;
+    memcpy(c->loop + facet->first, loop, (size_t)n * sizeof *loop);
+    return 0;
+}
+
+/* Numbers are asserted and not checked: CGAL, the mesh of a disc and the reader of files have
+ * judged theirs. A loop below three vertices is what merging leaves of a facet that touches itself;
+ * to pass over it here spares each caller the question. */
 int brc_cell_complex_add_facet(struct brc_context *ctx, struct brc_cell_complex *c,
                                const struct brc_cell_complex_facet *facet, const int32_t *loop)
 {
@@ -76,16 +95,14 @@ int brc_cell_complex_add_facet(struct brc_context *ctx, struct brc_cell_complex 
     BRC_ASSERT(facet->cell[0] >= 0 && facet->cell[0] < (int32_t)c->n_cells);
     if (facet->n < 3)
         return 0;
-    size_t n = (size_t)facet->n;
     BRC_GROW(ctx, c->facet, c->cap_facets, c->n_facets + 1);
-    BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + n);
-    memcpy(c->loop + c->n_loop, loop, n * sizeof *loop);
     c->facet[c->n_facets] = *facet;
-    c->facet[c->n_facets++].first = c->n_loop;
-    c->n_loop += n;
-    return 0;
+    c->facet[c->n_facets].n = 0;
+    return brc_cell_complex_set_loop(ctx, c, c->n_facets++, loop, facet->n);
 }
 
+/* The number decides whether a tessellation has failed; which cells they are is asked for by its
+ * message alone. */
 size_t brc_cell_complex_empty_cells(const struct brc_cell_complex *c, uint8_t *is_empty)
 {
     size_t n = c->n_cells;
@@ -127,12 +144,16 @@ static int side_of(const struct clip *w, int32_t v)
     return (size_t)v < w->n_old ? w->vertex[v].side : SIDE_ON;
 }
 
+/* By its ends in order, by which facets find that they share it, and as the loop runs, by which new
+ * loops are put together. */
 static struct edge edge_of(int32_t cell, int32_t from, int32_t to)
 {
     bool is_rising = from < to;
     return (struct edge){cell, is_rising ? from : to, is_rising ? to : from, from, to};
 }
 
+/* Lists grow, as how many edges a plane meets hangs on where the cells lie; most planes cut few of
+ * them. */
 static int push_edge(struct brc_context *ctx, struct edges *edges, struct edge e)
 {
     BRC_GROW(ctx, edges->list, edges->cap, edges->n + 1);
@@ -193,6 +214,8 @@ static int make_vertices(struct brc_context *ctx, struct clip *w)
     return 0;
 }
 
+/* The edge is in the list for certain: it was put there from this facet, too, and sides have not
+ * changed since. */
 static int32_t cut_vertex(const struct clip *w, int32_t u, int32_t v)
 {
     struct edge key = edge_of(0, u < v ? u : v, u < v ? v : u);
@@ -200,7 +223,7 @@ static int32_t cut_vertex(const struct clip *w, int32_t u, int32_t v)
     return (int32_t)(w->n_old + (size_t)(hit - w->cut.list));
 }
 
-/* Replaces the loop of a facet by its part inside; the new loop lies at the end of the pool. A
+/* Replaces the loop of a facet by its part inside. A
  * convex polygon leaves a half-plane once: one that does so twice has been bent by merging, and
  * would be two polygons. */
 static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
@@ -223,12 +246,7 @@ static int clip_facet(struct brc_context *ctx, struct clip *w, size_t f)
         BRC_FAIL(ctx, BRC_ERR_GEOMETRY,
                  "the facet between cells %d and %d is not convex where domain plane %d cuts it",
                  c->facet[f].cell[0], c->facet[f].cell[1], w->plane->id);
-    BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + (size_t)n_new);
-    memcpy(c->loop + c->n_loop, w->work, (size_t)n_new * sizeof *w->work);
-    c->facet[f].first = c->n_loop;
-    c->facet[f].n = n_new;
-    c->n_loop += (size_t)n_new;
-    return 0;
+    return brc_cell_complex_set_loop(ctx, c, f, w->work, n_new);
 }
 
 /* Collects the edges in the plane of all facets of the cells that lost something; those of a
@@ -299,6 +317,8 @@ static int close_cell(struct brc_context *ctx, struct clip *w, struct edge *open
     return 0;
 }
 
+/* Sorting has brought the edges of a cell together. A cell of which nothing is inside is not
+ * closed: it is an empty one from here on, and told as that when all planes have cut. */
 static int close_cells(struct brc_context *ctx, struct clip *w)
 {
     BRC_TRY(find_open_edges(ctx, w));
@@ -327,6 +347,8 @@ static int clip_all(struct brc_context *ctx, struct clip *w, double tolerance)
     return close_cells(ctx, w);
 }
 
+/* Work space is that of one cut: vertices and facets have become more by the next, and their arrays
+ * with them. */
 int brc_cell_complex_clip(struct brc_context *ctx, struct brc_cell_complex *c,
                           const struct brc_plane *plane, double tolerance)
 {

@@ -41,6 +41,10 @@ int brc_cell_complex_add_vertex(struct brc_context *ctx, struct brc_cell_complex
  * loop must not be the complex's own memory, which may move. */
 int brc_cell_complex_add_facet(struct brc_context *ctx, struct brc_cell_complex *c,
                                const struct brc_cell_complex_facet *facet, const int32_t *loop);
+/* Gives facet f another loop of n vertices, which is not the complex's own memory: one that is no
+ * longer takes the old one's place. */
+int brc_cell_complex_set_loop(struct brc_context *ctx, struct brc_cell_complex *c, size_t f,
+                              const int32_t *loop, int32_t n);
 /* Removes what lies outside the half-space and closes the cells there by facets with the plane's
  * id. Vertices within tolerance count as on the plane. */
 int brc_cell_complex_clip(struct brc_context *ctx, struct brc_cell_complex *c,

@@ -43,6 +43,8 @@ static void move_onto(double x[3], const struct brc_convex *domain, const struct
     }
 }
 
+/* By vertex and not by facet: one on an edge or in a corner of the domain lies on two or three
+ * planes and must end on all of them, whichever of its facets is met first. */
 int brc_cell_complex_snap_to_planes(struct brc_context *ctx, struct brc_cell_complex *c,
                                     const struct brc_convex *domain)
 {
@@ -96,6 +98,8 @@ static int sort_facets(struct brc_context *ctx, const struct brc_cell_complex *c
     return 0;
 }
 
+/* When all numbers are known, so that nothing grows. There is room for the vertices that no facet
+ * has, too: how many these are is known only when the others have been numbered. */
 static int allocate(struct brc_context *ctx, const struct brc_cell_complex *c, size_t n,
                     struct brc_facets *out)
 {
@@ -213,6 +217,7 @@ static bool is_consistent(const struct brc_facets *f)
     return is_good;
 }
 
+/* Sorting comes first, since it finds what is refused; from then on nothing but memory can fail. */
 static int finish(struct brc_context *ctx, const struct brc_cell_complex *c, struct brc_pool *pool,
                   struct brc_facets *out)
 {

@@ -109,6 +109,8 @@ static void group_facets(struct brc_erosion *e)
     }
 }
 
+/* Planes have room twice: as the cell has them, and behind these as they are moved for a radius, of
+ * which brc_erosion_inscribed tries many on one cell. */
 int brc_erosion_begin(struct brc_context *ctx, struct brc_erosion *e, const struct brc_facets *f,
                       size_t cell)
 {
@@ -123,6 +125,8 @@ int brc_erosion_begin(struct brc_context *ctx, struct brc_erosion *e, const stru
     return 0;
 }
 
+/* The box that the planes cut is twice as wide as the cell reaches: nothing of it may be left, as
+ * its faces stem from no facet. */
 int brc_erosion_core(struct brc_context *ctx, struct brc_erosion *e, double radius,
                      const double centre[3])
 {

@@ -26,6 +26,7 @@ void brc_facets_free(struct brc_facets *f)
     memset(f, 0, sizeof *f);
 }
 
+/* Apart from the arrays of the cells, since seeds are there first: cells are measured from them. */
 int brc_facets_seeds(struct brc_context *ctx, struct brc_facets *f, size_t n)
 {
     f->seed = brc_pool_alloc(ctx, &f->pool, n, sizeof *f->seed);
@@ -94,6 +95,8 @@ double brc_facets_width(const struct brc_facets *f, size_t facet)
     return 2 * f->area[facet] / perimeter;
 }
 
+/* Through the centroid, which lies in the middle of what the digits of the vertices leave open; a
+ * single vertex may be off by the whole of it. */
 void brc_facets_cell_planes(const struct brc_facets *f, size_t cell, struct brc_plane *planes)
 {
     for (size_t k = f->cell_first[cell]; k < f->cell_first[cell + 1]; k++) {
@@ -116,6 +119,9 @@ static int32_t local_number(int32_t *list, size_t *n, int32_t v)
     return (int32_t)(*n)++;
 }
 
+/* One cell at a time, in the caller's work space: what is asked of whole cells (closed, convex, its
+ * core) is asked once each, and cells that were kept as bodies would hold each facet twice and each
+ * vertex several times. */
 int brc_facets_cell(struct brc_context *ctx, const struct brc_facets *f, size_t cell,
                     struct brc_convex *c)
 {
@@ -205,6 +211,8 @@ static int verify_cell(struct brc_context *ctx, const struct brc_facets *f, size
     return 0;
 }
 
+/* Cells first, as a fault there has a place; the sum of the volumes, which has none, finds what is
+ * left: cells that overlap, or that do not fill the domain together. */
 int brc_facets_verify(struct brc_context *ctx, const struct brc_facets *f, double domain_volume,
                       const double origin[3])
 {
@@ -230,6 +238,7 @@ static void shift(double (*x)[3], size_t n, const double by[3])
         brc_add(x[i], x[i], by);
 }
 
+/* Normals have no place, and radii, areas and volumes are of the body itself. */
 void brc_facets_shift(struct brc_facets *f, const double by[3])
 {
     shift(f->vertex, f->n_vertices, by);

@@ -105,8 +105,7 @@ static int32_t find_repeat(const int32_t *loop, int32_t n, int32_t *again)
 }
 
 /* Gives facet f the loop in w->loop, tidied; a loop that touches itself becomes two facets, as two
- * polygons that share a vertex are what each cell has there. A shorter loop takes the old one's
- * place, a longer one goes to the end of the pool. */
+ * polygons that share a vertex are what each cell has there. */
 static int set_loop(struct brc_context *ctx, struct merger *w, size_t f, int32_t n)
 {
     struct brc_cell_complex *c = w->c;
@@ -119,14 +118,7 @@ static int set_loop(struct brc_context *ctx, struct merger *w, size_t f, int32_t
         memmove(w->loop + at, w->loop + again, (size_t)(n - again) * sizeof *w->loop);
         return set_loop(ctx, w, f, n - (again - at));
     }
-    if (n > c->facet[f].n) {
-        BRC_GROW(ctx, c->loop, c->cap_loop, c->n_loop + (size_t)n);
-        c->facet[f].first = c->n_loop;
-        c->n_loop += (size_t)n;
-    }
-    c->facet[f].n = n < 3 ? 0 : n;
-    memcpy(c->loop + c->facet[f].first, w->loop, (size_t)c->facet[f].n * sizeof *w->loop);
-    return 0;
+    return brc_cell_complex_set_loop(ctx, c, f, w->loop, n < 3 ? 0 : n);
 }
 
 /* Renames the vertices of all facets. */

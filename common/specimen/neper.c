@@ -24,6 +24,7 @@ static void put_point(FILE *out, const double x[3])
     fprintf(out, " %.17g %.17g %.17g", x[0], x[1], x[2]);
 }
 
+/* The 0 behind a vertex or an edge is the state that Neper gives it; breccia has none to tell. */
 static void put_cells(const struct writer *w)
 {
     const struct brc_facets *f = &w->s->facets;
@@ -63,6 +64,8 @@ static void put_loop(FILE *out, const struct brc_edges *e, const int32_t *loop, 
     fputc('\n', out);
 }
 
+/* The five zeros are state and point of a face, which say nothing of one that is flat. Planes are
+ * written for Neper's tools; breccia's own reader takes the vertices. */
 static void put_faces(const struct writer *w)
 {
     const struct brc_facets *f = &w->s->facets;
@@ -178,6 +181,8 @@ static void put_domain_edges(const struct writer *w)
     }
 }
 
+/* A face has a type and its parameters, as in format 3; 2.0 had the equation of a plane alone.
+ * Which facets lie on it ends the entry. */
 static void put_domain_faces(const struct writer *w)
 {
     const struct brc_convex *d = &w->s->domain;
@@ -196,6 +201,7 @@ static void put_domain_faces(const struct writer *w)
     }
 }
 
+/* In the order of the format, in which each section names entries of those before it by number. */
 static void put_all(const struct writer *w)
 {
     fputs("***tess\n **format\n   3.4\n **general\n   3 standard\n", w->out);
@@ -209,6 +215,7 @@ static void put_all(const struct writer *w)
     fputs("***end\n", w->out);
 }
 
+/* Edges of the cells and of the domain are numbered apart, as they are two lists of the file. */
 static int write_all(struct brc_context *ctx, struct writer *w)
 {
     const struct brc_facets *f = &w->s->facets;

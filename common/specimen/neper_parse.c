@@ -14,6 +14,8 @@
 /* More than any domain of flat faces has; each of them is compared with each other one. */
 enum { MAX_DOMAIN_FACES = 100000 };
 
+/* With the line and the word that stands there: files have as many lines as vertices, and the
+ * message has to show which part was taken for another. */
 static int fail(const struct brc_neper_file *t, const char *what)
 {
     BRC_FAIL(t->ctx, BRC_ERR_INPUT, "%s:%d: %s; found '%.40s'", t->path, t->line, what, t->token);
@@ -192,6 +194,8 @@ static int read_vertex(struct brc_neper_file *t, size_t i)
     return skip(t, 1); /* state */
 }
 
+/* The loops of all faces lie in one array, made before any is read: a vertex takes two bytes of the
+ * file at least, so that half of its size is room enough whatever the file claims. */
 static int read_face(struct brc_neper_file *t, size_t i)
 {
     size_t n;

@@ -276,6 +276,8 @@ static int add_facet(struct tess *t, struct brc_cell_complex *c, size_t i,
     return brc_cell_complex_add_facet(t->file.ctx, c, &facet, loop);
 }
 
+/* Merging joins what the file has twice and no more: its length is that of rounding, since the
+ * cells of a file are to stay as they were made. */
 static int fill_complex(struct tess *t, struct brc_cell_complex *c, const struct brc_convex *domain)
 {
     c->n_cells = t->file.n_cells;
@@ -322,6 +324,8 @@ static int make_facets(struct tess *t, struct brc_cell_complex *c, bool has_sphe
     return brc_facets_verify(t->file.ctx, out, volume, t->origin);
 }
 
+/* The domain comes before the cells, since boundary vertices are moved onto its planes; it is made
+ * from the same vertices, so that the two agree but for their last digits. */
 static int make_all(struct tess *t, double metres, bool has_spheres, struct brc_convex *domain,
                     struct brc_cell_complex *c, struct brc_facets *out)
 {

@@ -39,6 +39,8 @@ static bool is_counted(const struct brc_facets *f, size_t facet)
     return f->cell[facet][1] >= 0 && f->is_contact[facet] && f->area[facet] > 0;
 }
 
+/* Over contacts alone: facets that are none are small, and would lower the mean by which others
+ * count as too small to have a normal. */
 static double mean_area(const struct brc_facets *f)
 {
     double area = 0, n = 0;
@@ -59,6 +61,8 @@ static void add_stored(double stored[2], const struct brc_facets *f, const doubl
     stored[1] += f->area[facet] * along * brc_dot(m, f->normal[facet]);
 }
 
+/* What a direction stores is divided by the volume that the same facets span, not by that of the
+ * specimen: so the layer at the boundary, whose outer facets are left out, does not look soft. */
 void brc_oblique_measure(struct brc_oblique *o, const struct brc_facets *f, double (*centre)[3],
                          bool is_projected)
 {

@@ -80,6 +80,7 @@ static int choose_count(struct brc_context *ctx, const struct brc_specimen_param
     return 0;
 }
 
+/* Of a centre, positive inside; a sphere touches the plane where it is its radius. */
 static double wall_distance(const struct brc_plane *plane, const double x[3])
 {
     return plane->d - brc_dot(plane->n, x);
@@ -279,6 +280,7 @@ static int pack(struct brc_context *ctx, struct packing *p, const struct brc_spe
     return code;
 }
 
+/* Places and radii are made in the result itself; all else is work that ends with the packing. */
 int brc_seeds_packing(struct brc_context *ctx, const struct brc_specimen_params *s,
                       const struct brc_convex *domain, double domain_volume, struct brc_seeds *out)
 {

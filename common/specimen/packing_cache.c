@@ -79,6 +79,8 @@ static bool read_seeds(FILE *file, uint64_t key, struct brc_context *ctx, struct
     return false;
 }
 
+/* Any doubt is a miss: to make the packing again takes seconds, and a wrong one would not be seen.
+ */
 bool brc_packing_cache_load(struct brc_context *ctx, const struct brc_specimen_params *p,
                             const struct brc_convex *domain, struct brc_seeds *out)
 {

@@ -86,6 +86,8 @@ int brc_seeds_grid(struct brc_context *ctx, const struct brc_specimen_params *p,
     return check_near(ctx, out, edge, "specimen.jitter, specimen.seed", "", NULL);
 }
 
+/* Radii are given for all or for none, as rows of a file have one width. A radius of 0 is allowed,
+ * and its cell is what the neighbours leave. */
 static int take_rows(struct brc_context *ctx, const char *path, double domain_volume,
                      const struct brc_numbers *rows, struct brc_seeds *out)
 {
@@ -106,6 +108,7 @@ static int take_rows(struct brc_context *ctx, const char *path, double domain_vo
                       rows);
 }
 
+/* Seeds stay in the order of the file until they are checked: messages name its lines. */
 int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *p,
                      double domain_volume, struct brc_seeds *out)
 {
@@ -120,6 +123,8 @@ int brc_seeds_points(struct brc_context *ctx, const struct brc_specimen_params *
     return code;
 }
 
+/* Cells get their numbers from their seeds, so that this order is that of the grains in memory and
+ * in files. */
 int brc_seeds_sort(struct brc_context *ctx, struct brc_seeds *s)
 {
     struct brc_seeds sorted = {0};

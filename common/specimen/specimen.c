@@ -37,6 +37,8 @@ static const double few_grains = 5;
  */
 enum { SIDES = 256, MESH_SIDES = 30 };
 
+/* One place for the default, since the disc's mesh and the cylinder's planes must have the same
+ * sides. */
 static int number_of_sides(const struct brc_specimen_params *p)
 {
     if (p->sides > 0)
@@ -102,6 +104,8 @@ static int enclose(struct brc_context *ctx, const char *path, const struct brc_n
     return 0;
 }
 
+/* Reading is apart from what is made of the rows, so that they are freed whatever the planes
+ * enclose. */
 static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_params *p,
                            struct brc_pool *pool, struct brc_convex *domain)
 {
@@ -112,6 +116,8 @@ static int make_polyhedron(struct brc_context *ctx, const struct brc_specimen_pa
     return code;
 }
 
+/* Boxes and cylinders begin at the origin; planes of a file may be anywhere, and what is far away
+ * is worked on nearby (geometry/convex.h). */
 static int make_domain(struct brc_context *ctx, const struct brc_specimen_params *p,
                        struct brc_pool *pool, struct brc_convex *domain)
 {
@@ -169,23 +175,6 @@ static int check_centres(struct brc_context *ctx, const struct brc_facets *f)
         }
     }
     return 0;
-}
-
-/* Both are figures that vgcm's paper gives for its specimens. */
-static void measure(struct brc_specimen *s)
-{
-    const struct brc_facets *f = &s->facets;
-    double spheres = 0, distance = 0;
-    size_t inner = 0;
-    for (size_t c = 0; c < f->n_cells; c++)
-        spheres += 4 * BRC_PI / 3 * f->radius[c] * f->radius[c] * f->radius[c];
-    for (size_t i = 0; i < f->n_facets; i++)
-        if (f->cell[i][1] >= 0 && f->is_contact[i]) {
-            distance += brc_distance(f->seed[f->cell[i][1]], f->seed[f->cell[i][0]]);
-            inner++;
-        }
-    s->solid_fraction = spheres / s->domain_volume;
-    s->mean_contact_distance = inner > 0 ? distance / (double)inner : 0;
 }
 
 /* Meshes have no seeds, and their domain's polygon is inscribed in the circle as gt12's is. Their
@@ -247,6 +236,8 @@ static int check_domain(struct brc_context *ctx, const struct brc_specimen *s)
     return 0;
 }
 
+/* A file of cells has its domain with it. All other grains need the domain first: seeds lie in it,
+ * and its planes cut the cells. */
 static int make_or_read(struct brc_context *ctx, struct brc_pool *pool, struct brc_specimen *s)
 {
     double centroid[3], inertia[3][3];
@@ -265,9 +256,7 @@ int brc_specimen_create(struct brc_context *ctx, const struct brc_specimen_param
     *out = (struct brc_specimen){.params = *params};
     int code = make_or_read(ctx, &pool, out);
     brc_pool_free(&pool);
-    if (code == 0)
-        measure(out);
-    else
+    if (code != 0)
         brc_specimen_free(out);
     return code;
 }
@@ -299,6 +288,8 @@ void brc_specimen_free(struct brc_specimen *s)
     memset(s, 0, sizeof *s);
 }
 
+/* Of the cells and not of the domain: platens begin where grains end, and the two may differ in
+ * their last digits. */
 void brc_specimen_extent(const struct brc_specimen *s, double low[3], double high[3])
 {
     brc_box_of(low, high, s->facets.vertex, s->facets.n_vertices);

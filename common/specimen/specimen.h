@@ -14,8 +14,6 @@ struct brc_specimen {
                                  2 + k side k with its normal at 90 deg + k 360/(number of sides) */
     double domain_volume;     /* m3 */
     struct brc_facets facets;
-    double solid_fraction;        /* spheres / domain; 0 for plain Voronoi */
-    double mean_contact_distance; /* m, mean centre distance over the inner facets */
 };
 
 /* Makes (or loads from the cache) the specimen. Equal parameters give equal bits. */

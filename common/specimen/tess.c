@@ -101,6 +101,8 @@ static int name_missing(struct brc_context *ctx, const struct work *w)
     return 0;
 }
 
+/* From CGAL on for each merge length: merging and cutting leave nothing as it was, and a second
+ * length is needed too seldom for a copy of the complex to be worth its memory. */
 static int make_facets(struct brc_context *ctx, struct work *w, double merge_length,
                        struct brc_facets *out)
 {
@@ -182,6 +184,8 @@ static int prepare(struct brc_context *ctx, struct work *w)
     return w->pool.is_failed ? BRC_ERR_MEMORY : 0;
 }
 
+/* Areas are measured and judged near the origin, where no digits are lost; places are moved last.
+ */
 static int tessellate(struct brc_context *ctx, struct work *w, double min_area_ratio,
                       struct brc_facets *out)
 {

@@ -139,6 +139,8 @@ void power_centre(const double p[4][3], const double w[4], Number x[3], Number &
     shape = product;
 }
 
+/* A vertex of the diagram: where the powers of four seeds are equal. Relative to the first of them,
+ * so that its digits are those of the distance and not of the place. */
 void cell_centre(const std::array<Vertex, 4> &corner, double x[3])
 {
     /* Below this sine, long double may lose more than the last digits of a double. Few tetrahedra
@@ -241,6 +243,8 @@ int add_facet(brc_context *ctx, const Regular &t, const Sorted::Edge &e, double 
     return brc_cell_complex_add_facet(ctx, out, &facet, loop.data());
 }
 
+/* Vertices have the numbers of the sorted tetrahedra; the infos of CGAL's cells carry these to the
+ * facets, which meet the cells in CGAL's order. */
 int copy_cells(brc_context *ctx, const Regular &t, double (*seed)[3], brc_cell_complex *out)
 {
     Sorted sorted(t);
@@ -257,6 +261,9 @@ int copy_cells(brc_context *ctx, const Regular &t, double (*seed)[3], brc_cell_c
     return 0;
 }
 
+/* All points at once: CGAL then inserts them along a curve of its own, and the infos tell
+ * afterwards which is which. A seed that has no vertex is hidden, by the one whose power is least
+ * at its place. */
 int make_cells(brc_context *ctx, double (*seed)[3], const double *radius, size_t n,
                const double centre[3], double half_width, int32_t *hider, brc_cell_complex *out)
 {
@@ -330,20 +337,19 @@ Sorted_mesh::Sorted_mesh(const Mesh &mesh)
         numbers.emplace(face.second.handle, n++);
 }
 
-/* An array of the pool with the type of the pointer that it is for. */
-template <class Element> int allocate(brc_context *ctx, brc_pool *pool, Element *&array, size_t n)
-{
-    array = static_cast<Element *>(brc_pool_alloc(ctx, pool, n, sizeof *array));
-    return array ? 0 : BRC_ERR_MEMORY;
-}
-
+/* CGAL numbers a neighbour by the vertex that it lies opposite to; turning a triangle, so that it
+ * begins with its lowest vertex, has moved both alike. */
 int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_pool *pool, brc_cgal_mesh *out)
 {
     Sorted_mesh sorted(mesh);
     size_t n = sorted.faces.size(), n_vertices = sorted.vertices.size();
-    BRC_TRY(allocate(ctx, pool, out->vertex, n_vertices));
-    BRC_TRY(allocate(ctx, pool, out->triangle, n));
-    BRC_TRY(allocate(ctx, pool, out->neighbour, n));
+    out->vertex =
+        static_cast<double(*)[2]>(brc_pool_alloc(ctx, pool, n_vertices, sizeof *out->vertex));
+    out->triangle = static_cast<int32_t(*)[3]>(brc_pool_alloc(ctx, pool, n, sizeof *out->triangle));
+    out->neighbour =
+        static_cast<int32_t(*)[3]>(brc_pool_alloc(ctx, pool, n, sizeof *out->neighbour));
+    if (pool->is_failed)
+        return BRC_ERR_MEMORY;
     for (const auto &[place, number] : sorted.vertices) {
         out->vertex[number][0] = place.first;
         out->vertex[number][1] = place.second;
@@ -361,6 +367,8 @@ int copy_mesh(brc_context *ctx, const Mesh &mesh, brc_pool *pool, brc_cgal_mesh 
     return 0;
 }
 
+/* The ring is given as constraints, so that the rim stays a polygon of n sides: refining adds
+ * points on its sides, and none beside them. */
 int make_mesh(brc_context *ctx, double (*corner)[2], size_t n, double max_area, brc_pool *pool,
               brc_cgal_mesh *out)
 {

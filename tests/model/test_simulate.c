@@ -72,7 +72,7 @@ static void values_reach_the_model(void **state)
     assert_true(v[0].residual[1].measured > 0 && v[0].n_runs == 1 && v[0].cpu_s > 0);
     assert_true(v[2].cost == v[0].cost && v[1].cost != v[0].cost);
     calib_simulator_free(&s);
-    assert_false(s.has_specimen[brc_rigs_find("compression")]);
+    assert_int_equal(s.specimen[brc_rigs_find("compression")].facets.n_cells, 0);
 }
 
 static void bad_runs_are_named(void **state)

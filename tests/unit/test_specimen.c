@@ -58,6 +58,29 @@ static void check_facets(const struct brc_specimen *s)
     }
 }
 
+/* Spheres over domain, and the mean distance of centres over the inner facets: both are figures
+ * that vgcm's paper gives for its specimens. */
+static double solid_fraction(const struct brc_specimen *s)
+{
+    const struct brc_facets *f = &s->facets;
+    double spheres = 0;
+    for (size_t c = 0; c < f->n_cells; c++)
+        spheres += 4 * BRC_PI / 3 * f->radius[c] * f->radius[c] * f->radius[c];
+    return spheres / s->domain_volume;
+}
+
+static double mean_contact_distance(const struct brc_specimen *s)
+{
+    const struct brc_facets *f = &s->facets;
+    double distance = 0, n = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0 && f->is_contact[i]) {
+            distance += brc_distance(f->seed[f->cell[i][1]], f->seed[f->cell[i][0]]);
+            n++;
+        }
+    return distance / n;
+}
+
 static void test_grid(void **state)
 {
     (void)state;
@@ -95,7 +118,7 @@ static void test_grid(void **state)
     brc_specimen_extent(&s, low, high);
     CHECK_NEAR_ARRAY(low, ((double[3]){0, 0, 0}), 3, 0, 0);
     CHECK_NEAR_ARRAY(high, ((double[3]){0.08, 0.06, 0.04}), 3, 0, 1e-15);
-    CHECK_NEAR(s.solid_fraction, 0, 0, 0);
+    CHECK_NEAR(solid_fraction(&s), 0, 0, 0);
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &other));
     assert_int_equal(hash(&s), hash(&other));
     brc_specimen_free(&other);
@@ -114,7 +137,7 @@ static void test_cubes(void **state)
     struct brc_specimen s;
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
     assert_int_equal(s.facets.n_facets, 54 + 54);
-    CHECK_NEAR(s.mean_contact_distance, 0.01, 0, 1e-14);
+    CHECK_NEAR(mean_contact_distance(&s), 0.01, 0, 1e-14);
     check_facets(&s);
     brc_specimen_free(&s);
 }
@@ -169,11 +192,11 @@ static void check_packing(const struct brc_specimen *s, double seconds)
     }
     print_message("%zu spheres in %.2f s: solid fraction %.4f, mean distance %.3f mm, within 1 mm "
                   "%.3f mm (%.0f %% of the facets), mean overlap %.3f mm\n",
-                  f->n_cells, seconds, s->solid_fraction, 1e3 * s->mean_contact_distance,
+                  f->n_cells, seconds, solid_fraction(s), 1e3 * mean_contact_distance(s),
                   1e3 * near / (double)n_near, 100 * (double)n_near / (double)n_inner,
                   1e3 * overlap / (double)n_touch);
-    CHECK_NEAR(s->solid_fraction, 0.676, 1e-3, 0);
-    CHECK_BETWEEN(s->mean_contact_distance, 5.35e-3, 5.6e-3);
+    CHECK_NEAR(solid_fraction(s), 0.676, 1e-3, 0);
+    CHECK_BETWEEN(mean_contact_distance(s), 5.35e-3, 5.6e-3);
     CHECK_BETWEEN(near / (double)n_near, 5.0e-3, 5.2e-3);
     CHECK_BETWEEN((double)n_near / (double)n_inner, 0.72, 0.85);
     CHECK_BETWEEN(overlap / (double)n_touch, 1e-5, 2e-4);
@@ -210,7 +233,7 @@ static void test_packing(void **state)
     p = PARAMS("height", "20 mm", "diameter", "30 mm", "count", "100", "cache", "off");
     CHECK_OK(&ctx, brc_specimen_create(&ctx, &p, &s));
     assert_int_equal(s.facets.n_cells, 100);
-    CHECK_NEAR(s.solid_fraction, 100 * BRC_PI / 6 * 130e-9 / s.domain_volume, 0, 5e-3);
+    CHECK_NEAR(solid_fraction(&s), 100 * BRC_PI / 6 * 130e-9 / s.domain_volume, 0, 5e-3);
     brc_specimen_free(&s);
 }
 
