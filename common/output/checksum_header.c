@@ -64,8 +64,7 @@ static int measure(struct brc_context *ctx, const char *path, FILE *file, struct
         s->hash = brc_hash_bytes(block, n, s->hash);
         s->size += n;
     }
-    is_good = is_good && !ferror(file);
-    if (!is_good)
+    if (!is_good || ferror(file))
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot read %s: %s", path, strerror(errno));
     return 0;
 }

@@ -131,15 +131,6 @@ static int check_outcomes(struct compare *c)
     return is_stopped ? fail_interrupted(c) : 0;
 }
 
-/* Last, when all results are there to be looked at. */
-static int check_energy(const struct compare *c)
-{
-    for (int i = 0; i < c->n; i++)
-        if (c->outcome[i].code == BRC_ERR_ENERGY)
-            BRC_FAIL(c->ctx, BRC_ERR_ENERGY, "%s", c->outcome[i].message);
-    return 0;
-}
-
 /* ---- results ------------------------------------------------------------------------------- */
 
 /* To the terminal first: the table is there even when the folder has no room for it. */
@@ -196,7 +187,10 @@ static int run(struct compare *c)
     BRC_TRY(check_outcomes(c));
     BRC_TRY(write_table(c));
     BRC_TRY(draw(c));
-    return check_energy(c);
+    for (int i = 0; i < c->n; i++) /* last, when all results are there to be looked at */
+        if (c->outcome[i].code == BRC_ERR_ENERGY)
+            BRC_FAIL(c->ctx, BRC_ERR_ENERGY, "%s", c->outcome[i].message);
+    return 0;
 }
 
 int brc_compare(struct brc_context *ctx, const struct brc_run_options *options)

@@ -5,6 +5,7 @@
 #include "common/runs/export.h"
 
 #include "common/base/text_file.h"
+#include "common/base/tuples.h"
 #include "common/engine/fragments.h"
 #include "common/output/io_h5.h"
 #include "common/runs/case.h"
@@ -167,28 +168,24 @@ struct surface {
         double sum[3];
         int32_t count, grain, fragment; /* met; last grain and fragment that it was met in */
     } * vertex;                         /* [n_vertices] */
-    size_t *first, *grain;              /* grains by fragment */
+    struct member {
+        int32_t fragment, grain;
+    } * member; /* [n_cells] by fragment, then grain */
 };
 
-/* The grains of a fragment by counting, as the sizes are known: a grain is put where its fragment's
- * part of the list has come to, so that each start ends up as the next one's and is moved back. */
+/* Grains are sorted by fragment: those of one then stand together, in ascending order. */
 static int open_surface(struct brc_context *ctx, struct surface *s)
 {
     const struct brc_facets *f = &s->sim->specimen->facets;
-    size_t n = s->fragments->n;
     s->vertex = brc_alloc(ctx, f->n_vertices, sizeof *s->vertex);
-    s->first = brc_alloc(ctx, n + 1, sizeof *s->first);
-    s->grain = brc_alloc(ctx, f->n_cells, sizeof *s->grain);
-    if (!s->vertex || !s->first || !s->grain)
+    s->member = brc_alloc(ctx, f->n_cells, sizeof *s->member);
+    if (!s->vertex || !s->member)
         return BRC_ERR_MEMORY;
     for (size_t v = 0; v < f->n_vertices; v++)
         s->vertex[v].grain = s->vertex[v].fragment = -1;
-    for (size_t k = 0; k < n; k++)
-        s->first[k + 1] = s->first[k] + (size_t)s->fragments->size[k];
     for (size_t i = 0; i < f->n_cells; i++)
-        s->grain[s->first[s->fragments->of[i]]++] = i;
-    memmove(s->first + 1, s->first, n * sizeof *s->first);
-    s->first[0] = 0;
+        s->member[i] = (struct member){s->fragments->of[i], (int32_t)i};
+    qsort(s->member, f->n_cells, sizeof *s->member, brc_tuple2_compare);
     return 0;
 }
 
@@ -241,19 +238,21 @@ static void put_facet(FILE *out, const struct surface *s, size_t grain, size_t f
     }
 }
 
-static void put_fragment(FILE *out, struct surface *s, size_t k)
+/* The members from first to end are all of one fragment. All vertices are placed before a facet is
+ * put, as the mean over the grains at one needs them all. */
+static void put_fragment(FILE *out, struct surface *s, size_t first, size_t end)
 {
     const struct brc_facets *f = &s->sim->specimen->facets;
-    size_t first = s->first[k], end = s->first[k + 1];
-    for (size_t i = first; i < end; i++)
-        for (size_t j = f->cell_first[s->grain[i]]; j < f->cell_first[s->grain[i] + 1]; j++)
+    int32_t fragment = s->member[first].fragment;
+    for (const struct member *p = s->member + first; p < s->member + end; p++)
+        for (size_t j = f->cell_first[p->grain]; j < f->cell_first[p->grain + 1]; j++)
             for (size_t m = f->first[f->cell_facet[j]]; m < f->first[f->cell_facet[j] + 1]; m++)
-                add_vertex(s, f->loop[m], (int32_t)s->grain[i], (int32_t)k);
-    fprintf(out, "solid fragment_%zu\n", k);
-    for (size_t i = first; i < end; i++)
-        for (size_t j = f->cell_first[s->grain[i]]; j < f->cell_first[s->grain[i] + 1]; j++)
-            put_facet(out, s, s->grain[i], (size_t)f->cell_facet[j]);
-    fprintf(out, "endsolid fragment_%zu\n", k);
+                add_vertex(s, f->loop[m], p->grain, fragment);
+    fprintf(out, "solid fragment_%d\n", fragment);
+    for (const struct member *p = s->member + first; p < s->member + end; p++)
+        for (size_t j = f->cell_first[p->grain]; j < f->cell_first[p->grain + 1]; j++)
+            put_facet(out, s, (size_t)p->grain, (size_t)f->cell_facet[j]);
+    fprintf(out, "endsolid fragment_%d\n", fragment);
 }
 
 /* Fragments by number, the largest first; each vertex is moved by all grains of its fragment that
@@ -265,11 +264,14 @@ int brc_export_stl(struct brc_context *ctx, FILE *out, const struct brc_sim *sim
     int code = brc_fragments_find(ctx, sim, &fragments);
     if (code == 0)
         code = open_surface(ctx, &s);
-    for (size_t k = 0; k < fragments.n && code == 0; k++)
-        put_fragment(out, &s, k);
+    size_t n = code == 0 ? sim->specimen->facets.n_cells : 0;
+    for (size_t first = 0, end; first < n; first = end) {
+        for (end = first; end < n && s.member[end].fragment == s.member[first].fragment; end++)
+            continue;
+        put_fragment(out, &s, first, end);
+    }
     free(s.vertex);
-    free(s.first);
-    free(s.grain);
+    free(s.member);
     brc_fragments_free(&fragments);
     return code;
 }
