@@ -251,44 +251,46 @@ enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
 struct command {
     const char *name;
-    char letter; /* in option.commands: a list of names a row would leave no room for its help */
-    const char *operand, *does, *example, *more;
+    char letter;   /* in option.commands: a list of names a row would leave no room for its help */
     bool has_case; /* the operand is one, and is read before */
+    const char *operand, *does, *example, *more;
     /* One table of both kinds, so that neither help nor completion has to know which is which. */
     int (*act)(struct brc_context *ctx, const struct options *o);
 };
 
 /* Examples can be pasted where the sources are, as they name the cases that come with them. */
 static const struct command commands[] = {
-    {"run", 'R', "CASE", "run one model through the test of a case file",
+    {"run", 'R', true, "CASE", "run one model through the test of a case file",
      "breccia run cases/demo_tension.yaml --model vgcm -o results/first --set specimen.seed=2",
      "Writes summary.json, curve.csv, events.csv, state.h5, case.yaml, log and pictures.\n"
      "Ctrl-C saves the state and ends with status 7; the same command with --resume goes on.\n",
-     true, run_model},
-    {"compare", 'C', "CASE", "run all models of a case side by side and print a table",
+     run_model},
+    {"compare", 'C', true, "CASE", "run all models of a case side by side and print a table",
      "breccia compare cases/demo_tension.yaml -o results/pair",
      "Each model's results go to DIR/<model>; the table to DIR/compare.txt, the pictures to DIR.\n",
-     true, compare_models},
-    {"converge", 'V', "CASE", "what accuracy costs: ladders of settings against a finer reference",
+     compare_models},
+    {"converge", 'V', true, "CASE",
+     "what accuracy costs: ladders of settings against a finer reference",
      "breccia converge cases/demo_tension.yaml --observable E --axes step,loading --seeds 8",
      "Runs the case with one setting changed at a time, on several specimens, with all models;\n"
      "tells error, its uncertainty and cost of each, and the cheapest within 1 % and 5 %. Writes\n"
      "converge.txt, converge.csv, converge_runs.csv and converge.png; finished runs are never "
      "lost.\n",
-     true, run_ladder},
-    {"info", 'I', "FILE", "tell what a saved state or a frame holds",
+     run_ladder},
+    {"info", 'I', false, "FILE", "tell what a saved state or a frame holds",
      "breccia info results/pair/vgcm/state.h5",
-     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n", false,
+     "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n",
      act_info},
-    {"export", 'X', "FILE", "write tables, fragments or the specimen for other programs",
+    {"export", 'X', false, "FILE", "write tables, fragments or the specimen for other programs",
      "breccia export results/pair/vgcm/state.h5 --format stl -o fragments.stl",
-     "FILE is a saved state, or for --format tess a case file, too.\n", false, act_export},
-    {"params", 'P', "[SECTION]",
+     "FILE is a saved state, or for --format tess a case file, too.\n", act_export},
+    {"params", 'P', false, "[SECTION]",
      "list the keys of a section of the case file: a model, specimen, test, run, output",
-     "breccia params vgcm", "Without a section: all of them.\n", false, act_params},
-    {"models", 'M', "", "list the contact models", "breccia models", "", false, act_models},
-    {"tests", 'T', "", "list the tests: keys of `test:` that each uses, and what it measures",
-     "breccia tests", "", false, act_tests},
+     "breccia params vgcm", "Without a section: all of them.\n", act_params},
+    {"models", 'M', false, "", "list the contact models", "breccia models", "", act_models},
+    {"tests", 'T', false, "",
+     "list the tests: keys of `test:` that each uses, and what it measures", "breccia tests", "",
+     act_tests},
 };
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -437,20 +439,23 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
  * Reads the case for a command, and tells in its message where in the case a failure comes from.
  * Results go where the user says, else by the names of the case and, for a run, of its model. A
  * path that is cut here is refused later, as too long for any file in it. */
-static int act_on_case(struct brc_context *ctx, struct options *o, const struct command *c)
+static int act_on_case(struct brc_context *ctx, const struct options *o, const struct command *c)
 {
     char dir[BRC_PATH_SIZE];
     struct brc_case run_case;
     int code = brc_case_read(ctx, &run_case, o->operand, o->overrides, o->n_overrides);
-    o->ladder.run.run_case = &run_case;
-    o->ladder.run.dir = dir;
+    /* a copy: the options outlive the case and the name of its folder, as print_resume needs them
+     */
+    struct options own = *o;
+    own.ladder.run.run_case = &run_case;
+    own.ladder.run.dir = dir;
     if (code == 0) {
-        const char *model = c->act == run_model ? model_of(o) : "";
+        const char *model = c->act == run_model ? model_of(&own) : "";
         if (o->out)
             snprintf(dir, sizeof dir, "%s", o->out);
         else
             snprintf(dir, sizeof dir, "results/%s%s%s", run_case.name, *model ? "/" : "", model);
-        code = c->act(ctx, o);
+        code = c->act(ctx, &own);
         brc_case_locate(ctx, &run_case);
     }
     if (code == 0 || code == BRC_ERR_ENERGY) /* wrong ones are kept, too: the status says so */
