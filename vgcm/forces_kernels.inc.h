@@ -169,7 +169,6 @@ static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
     struct brc_contacts *c = l->c;
     struct vgcm_contact4 x = {.index = {.at = {i, i, i, i}}, .live = brc_lanes_first(1)};
     struct vgcm_bond bond = vgcm_springs_of(l->law, l->f->kn[i]);
-    struct vgcm_energy e = {0};
     size_t j = (size_t)c->p0[i];
     double area = l->p->law[j][VGCM_AREA];
     vgcm_motion_of(&l->sim->bodies, c, &x.index, l->sim->dt, &x.m);
@@ -177,16 +176,13 @@ static void vgcm_sphere_forces(struct vgcm_loop *l, int32_t i, int flags)
     vgcm_put3(l->f->s, &x.index, x.m.s);
     double du[3] = {x.m.du[VGCM_OPEN][0], x.m.du[VGCM_S][0], x.m.du[VGCM_T][0]};
     struct vgcm_point q = vgcm_point_at(l->p, j, c->gap[i] - du[0], bond.ks * area);
-    vgcm_law_friction(&bond, area, du, &q, &e);
+    vgcm_law_friction(&bond, area, du, &q, &x.energy);
     vgcm_point_put(l->p, j, bond.per_ks / area, &q);
     x.sum[VGCM_OPEN] = brc_lanes_all(q.fn);
     x.sum[VGCM_S] = brc_lanes_all(q.fs);
     x.sum[VGCM_T] = brc_lanes_all(q.ft);
     if (flags & VGCM_VISCOUS)
         vgcm_sphere_viscous(l, &x, area, &q);
-    x.energy.normal[0] = e.normal;
-    x.energy.shear[0] = e.shear;
-    x.energy.friction[0] = e.friction;
     vgcm_contact4_apply(l, &x, flags & VGCM_LEDGER);
     double k = c->gap[i] < 0 ? fmax(bond.kn, bond.ks) * area : 0;
     double h = x.m.h[0], g = x.m.d[0] - h;
@@ -296,42 +292,21 @@ VGCM_INLINE void vgcm_forces_loop(struct brc_sim *sim, const struct vgcm_law *la
     }
 }
 
+/* Sets of flags that there are: brittle contacts have no losses of strength, as without a softening
+ * branch there is nothing to add. */
+#define VGCM_FLAGS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(10) X(12) X(14)
 #define VGCM_LOOP(n)                                                             \
     static void vgcm_forces_##n(struct brc_sim *sim, const struct vgcm_law *law) \
     {                                                                            \
         vgcm_forces_loop(sim, law, n);                                           \
     }
-VGCM_LOOP(0)
-VGCM_LOOP(1)
-VGCM_LOOP(2)
-VGCM_LOOP(3)
-VGCM_LOOP(4)
-VGCM_LOOP(5)
-VGCM_LOOP(6)
-VGCM_LOOP(7)
-VGCM_LOOP(8)
-VGCM_LOOP(10)
-VGCM_LOOP(12)
-VGCM_LOOP(14)
+#define VGCM_ENTRY(n) [n] = vgcm_forces_##n,
+VGCM_FLAGS(VGCM_LOOP)
 #undef VGCM_LOOP
 
-/* Places that stay empty are brittle with losses of strength, which needs no loop: without a
- * softening branch there is nothing to add. */
-#define VGCM_LOOPS                            \
-    {                                         \
-        {vgcm_forces_0,                       \
-         vgcm_forces_1,                       \
-         vgcm_forces_2,                       \
-         vgcm_forces_3,                       \
-         vgcm_forces_4,                       \
-         vgcm_forces_5,                       \
-         vgcm_forces_6,                       \
-         vgcm_forces_7,                       \
-         [VGCM_LOSSES] = vgcm_forces_8,       \
-         [VGCM_LOSSES + 2] = vgcm_forces_10,  \
-         [VGCM_LOSSES + 4] = vgcm_forces_12,  \
-         [VGCM_LOSSES + 6] = vgcm_forces_14}, \
-            vgcm_platens_loop                 \
+#define VGCM_LOOPS                                  \
+    {                                               \
+        {VGCM_FLAGS(VGCM_ENTRY)}, vgcm_platens_loop \
     }
 
 #endif

@@ -59,11 +59,6 @@ struct vgcm_point {
     double dissipated; /* J, dissipated until the damage was 1 */
 };
 
-/* Energy of a step: changes of what is stored, and what was dissipated [J]. */
-struct vgcm_energy {
-    double bond, normal, shear, damage, friction;
-};
-
 /* What the law wants to know of a bond, without a division left for its points. Divisions take
  * as long as a dozen multiplications, and a contact has 7 points: so they are made once a
  * contact, and forces are counted per area and stiffness until they are summed up. */
@@ -102,7 +97,7 @@ struct vgcm_friction_lanes {
     brc_lanes un, normal_force, s, t; /* m */
 };
 
-/* What is added up over steps [J]. */
+/* Changes of what is stored, and what was dissipated, added up over steps [J]. */
 struct vgcm_energy_lanes {
     brc_lanes bond, normal, shear, damage, friction;
 };
@@ -189,7 +184,7 @@ VGCM_INLINE void vgcm_lanes_bond(brc_lanes bond[VGCM_N_BOND], const struct vgcm_
     bond[VGCM_HALF_KS] = 0.5 * ks;
 }
 
-/* What one contact alone is asked by; vgcm_lanes_bond_of has the rest of its bond. */
+/* What one contact alone is asked by; vgcm_lanes_bond has the rest of its bond. */
 static inline struct vgcm_bond vgcm_springs_of(const struct vgcm_law *law, double kn)
 {
     double ks = law->eta * kn; /* eq:vgcm:29 */
@@ -340,15 +335,6 @@ VGCM_INLINE brc_lanes vgcm_lanes_account(const struct vgcm_law *law,
     return brc_lanes_where(was, dissipated);
 }
 
-/* The bond of a contact with ks and the strengths of the law, in each place. */
-static inline void vgcm_lanes_bond_of(const struct vgcm_bond *bond, brc_lanes all[VGCM_N_BOND])
-{
-    brc_lanes lanes[VGCM_N_BOND];
-    vgcm_lanes_bond(lanes, bond->law, brc_lanes_all(bond->kn));
-    for (int k = 0; k < VGCM_N_BOND; k++)
-        all[k] = brc_lanes_all(lanes[k][0]);
-}
-
 /* Points that are broken from the start: they push and slide with friction, and a platen may hold
  * them against opening (pulls), where no friction is left. un: after the step. */
 VGCM_INLINE void vgcm_lanes_friction(const struct vgcm_bond *bond, bool pulls, brc_lanes area,
@@ -371,24 +357,20 @@ VGCM_INLINE void vgcm_lanes_friction(const struct vgcm_bond *bond, bool pulls, b
     e->friction += half_ks * ((1 - ratio) * (s_old * s + t_old * t + ratio * force2));
 }
 
-/* One of them alone. */
+/* One of them alone, in all lanes. */
 static inline void vgcm_law_friction(const struct vgcm_bond *bond, double area, const double du[3],
-                                     struct vgcm_point *p, struct vgcm_energy *e)
+                                     struct vgcm_point *p, struct vgcm_energy_lanes *e)
 {
     double kn = bond->kn * area, ks = bond->ks * area, inv = bond->per_ks / area;
     const brc_lanes all[3] = {brc_lanes_all(du[0]), brc_lanes_all(du[1]), brc_lanes_all(du[2])};
     struct vgcm_friction_lanes q = {.un = brc_lanes_all(p->un + du[0]),
                                     .s = brc_lanes_all(inv * p->fs),
                                     .t = brc_lanes_all(inv * p->ft)};
-    struct vgcm_energy_lanes sum = {.bond = brc_lanes_all(0)};
-    vgcm_lanes_friction(bond, false, brc_lanes_all(area), all, &q, &sum);
+    vgcm_lanes_friction(bond, false, brc_lanes_all(area), all, &q, e);
     p->un = q.un[0];
     p->fn = kn * q.normal_force[0];
     p->fs = ks * q.s[0];
     p->ft = ks * q.t[0];
-    e->normal += sum.normal[0];
-    e->shear += sum.shear[0];
-    e->friction += sum.friction[0];
 }
 
 /* Normal force of one point [N]. */
@@ -400,7 +382,7 @@ static inline double vgcm_law_normal(const struct vgcm_bond *bond, int flags, do
                                  .ds = brc_lanes_all(p->ds),
                                  .un_old = brc_lanes_all(p->un)};
     brc_lanes all[VGCM_N_BOND];
-    vgcm_lanes_bond_of(bond, all);
+    vgcm_lanes_bond(all, bond->law, brc_lanes_all(bond->kn));
     vgcm_lanes_open(bond->law, all, flags, &q);
     return bond->kn * area * q.normal_force_old[0];
 }
