@@ -8,15 +8,10 @@
 
 static bool has(enum brc_simd set)
 {
-    switch (set) {
-    case BRC_SIMD_AVX512:
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-    case BRC_SIMD_AVX2:
-        return __builtin_cpu_supports("avx2");
-    default:
-        return true;
-    }
+    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                  __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+    const bool is_there[BRC_N_SIMD] = {true, __builtin_cpu_supports("avx2"), avx512};
+    return is_there[set];
 }
 
 enum brc_simd brc_simd_of(int choice)

@@ -57,8 +57,11 @@ static double radius_of(const struct grid *g, size_t i)
 
 /* Twice as many buckets as bodies or more, so that few hold bodies of two cells. Bodies of a bucket
  * stand side by side in one array: lists of pointers would fetch a cache line for each body. */
-static int grid_fill(struct brc_context *ctx, struct grid *g, struct brc_pool *pool)
+static int grid_make(struct brc_context *ctx, struct grid *g, struct brc_pool *pool)
 {
+    for (size_t i = 0; i < g->n; i++)
+        g->largest = fmax(g->largest, radius_of(g, i));
+    g->cell = g->radius ? 2 * g->largest + g->skin : point_cells * g->skin;
     g->n_buckets = 16;
     while (g->n_buckets < 2 * g->n)
         g->n_buckets *= 2;
@@ -116,14 +119,6 @@ static int list_body(struct brc_context *ctx, const struct grid *g, size_t i,
     if (out->n > start)
         qsort(out->pair + start, out->n - start, sizeof *out->pair, brc_tuple2_compare);
     return 0;
-}
-
-static int grid_make(struct brc_context *ctx, struct grid *g, struct brc_pool *pool)
-{
-    for (size_t i = 0; i < g->n; i++)
-        g->largest = fmax(g->largest, radius_of(g, i));
-    g->cell = g->radius ? 2 * g->largest + g->skin : point_cells * g->skin;
-    return grid_fill(ctx, g, pool);
 }
 
 int brc_grid_pairs(struct brc_context *ctx, const double (*x)[3], const double *radius, size_t n,
