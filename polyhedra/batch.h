@@ -171,6 +171,17 @@ struct poly_batch {
     struct poly_apart apart[POLY_TASKS];
 };
 
+/* Options of a run, which kernels get as literals: each is compiled without what is off, so that
+ * options cost nothing in a step. */
+enum poly_flags {
+    POLY_LEDGER = 1,
+    POLY_VISCOUS = 2,
+    POLY_FRICTION = 4,
+    POLY_TANGENTS = 8, /* contacts may be linearised */
+    POLY_TORSION = 16,
+    POLY_PLATENS = 32 /* contacts of platens */
+};
+
 /* What is done four at a time. */
 typedef void poly_kernel(struct poly_batch *batch);
 typedef int poly_list_kernel(struct brc_context *ctx, struct poly_list *l,
@@ -182,7 +193,7 @@ typedef void poly_pose_kernel(const struct brc_sim *sim, const struct poly_state
 struct poly_loop {
     poly_kernel *motion, *points, *finish;
 };
-/* Chosen once a run, so that options cost nothing in a step. */
+/* Chosen once a run. */
 struct poly_kernels {
     poly_pose_kernel *pose; /* vertices and planes in space */
     poly_list_kernel *list; /* poly_list_features */

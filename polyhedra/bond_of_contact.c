@@ -17,8 +17,9 @@ bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
     poly_all3(xa, sim->bodies.x[a]);
     poly_all3(x, sim->bodies.x[b]);
     poly_sub3(x, x, xa);
-    bool is_platen = c == &sim->platens, torsion = poly_params_of(sim)->torsion && !is_platen;
-    brc_mask intact = poly_bonds_of_four(&bonds, &pose, sim, st, c, &i, x, torsion, is_platen);
+    int own = poly_params_of(sim)->torsion ? POLY_TORSION : 0;
+    brc_mask intact = poly_bonds_of_four(&bonds, &pose, sim, st, c, &i, x,
+                                         c == &sim->platens ? POLY_PLATENS : own);
     poly_bond_law(&all, &bonds, &pose);
     *r = (struct poly_bond){
         .kn = bonds.kn[0], .kt = bonds.kt[0], .ktheta = bonds.ktheta[0], .energy = all.energy[0]};

@@ -13,6 +13,16 @@ void poly_on_face(struct poly_closest *r, const struct poly_core *c, int32_t f, 
     r->feature = poly_feature_code(f, POLY_ON_FACE);
 }
 
+/* Where p is inside the core: at its nearest face. */
+static bool find_inside(struct poly_closest *r, const struct poly_core *c, const double p[3])
+{
+    double h;
+    int32_t nearest = poly_highest(c, p, &h);
+    if (h <= 0)
+        poly_on_face(r, c, nearest, h);
+    return h <= 0;
+}
+
 /* Closest point x of the core's surface; on the surface itself the given normal stands in. Where p
  * is on the surface the direction to it is none, and the law would divide 0 by 0. */
 static void on_point(struct poly_closest *r, const double p[3], const double x[3],
@@ -149,11 +159,7 @@ void poly_closest_walk(struct poly_closest *r, const struct poly_core *c, const 
             return;
         feature = next;
     }
-    double h;
-    int32_t high = poly_highest(c, p, &h);
-    if (h <= 0)
-        poly_on_face(r, c, high, h);
-    else
+    if (!find_inside(r, c, p))
         poly_closest_search(r, c, p);
 }
 
@@ -190,14 +196,8 @@ bool poly_closest_of_rule(struct poly_closest *r, const struct poly_core *c, int
     double h = poly_height(f, p);
     if (h >= contact_distance)
         return false;
-    if (h < 0) {
-        double highest;
-        int32_t nearest = poly_highest(c, p, &highest);
-        if (highest <= 0) {
-            poly_on_face(r, c, nearest, highest);
-            return nearest == face;
-        }
-    }
+    if (h < 0 && find_inside(r, c, p))
+        return r->feature == poly_feature_code(face, POLY_ON_FACE);
     if (is_strict && poly_outside(c, f, p) >= 0)
         return false;
     poly_closest_on_face(r, c, face, p);
@@ -241,9 +241,7 @@ double poly_path_to_face(const struct poly_core *c, int32_t face, const double q
                          double contact_distance)
 {
     struct poly_closest at;
-    double highest;
-    poly_highest(c, q, &highest);
-    if (highest <= 0)
+    if (find_inside(&at, c, q))
         return 0;
     poly_closest_on_face(&at, c, face, q);
     double path = at.s - contact_distance;

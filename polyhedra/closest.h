@@ -19,12 +19,6 @@ static inline void poly_to_body(double r[3], const double m[3][3], const double 
         r[k] = m[0][k] * d[0] + m[1][k] * d[1] + m[2][k] * d[2];
 }
 
-static inline void poly_to_space(double r[3], const double m[3][3], const double v[3])
-{
-    for (int k = 0; k < 3; k++)
-        r[k] = brc_dot(m[k], v);
-}
-
 /* fmin and fmax are calls; these are instructions. */
 static inline double poly_least(double a, double b)
 {

@@ -206,8 +206,8 @@ int poly_list_platen(struct brc_sim *sim, struct poly_state *st, size_t contact)
 {
     struct brc_contacts *c = &sim->platens;
     struct poly_contacts *columns = c->model_columns;
-    size_t a = (size_t)c->a[contact], first = st->shapes.vertex_first[a];
-    size_t n = st->shapes.vertex_first[a + 1] - first;
+    size_t a = (size_t)c->a[contact], first = st->shapes.first[a].vertex;
+    size_t n = st->shapes.first[a + 1].vertex - first;
     double radius = poly_params_of(sim)->radius, reach = (1 + POLY_PLATEN_SKIN) * radius;
     double allowance = HUGE_VAL;
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[contact]);

@@ -5,23 +5,6 @@
 #include "polyhedra/poly.h"
 
 #include "common/specimen/erosion.h"
-#include "common/base/grow.h"
-
-#include <stdlib.h>
-
-/* Work space for one grain after the other. */
-struct eroder {
-    struct brc_erosion erosion;
-    double (*vertex)[3], (*normal)[3]; /* of the core in the body frame */
-    size_t cap_vertices, cap_normals;
-};
-
-static void eroder_free(struct eroder *e)
-{
-    brc_erosion_free(&e->erosion);
-    free(e->vertex);
-    free(e->normal);
-}
 
 /* The smallest of the grains' largest inscribed spheres, below a radius that some grain lacks. What
  * fails on the way does not replace the message that this radius is for. */
@@ -38,27 +21,23 @@ static double smallest_inscribed(struct brc_erosion *e, const struct brc_facets 
     return radius;
 }
 
-/* The core in the body frame. The frame is that of the principal axes of the whole cell: there the
- * inertia is diagonal, as the integrator wants it, and the core never changes. */
-static int add_core(struct brc_context *ctx, struct poly_shapes *shapes, struct eroder *e,
+/* Moves the core to the body frame and adds it. The frame is that of the principal axes of the
+ * whole cell: there the inertia is diagonal, as the integrator wants it, and the core never
+ * changes. */
+static int add_core(struct brc_context *ctx, struct poly_shapes *shapes, struct brc_convex *core,
                     const double x[3], const double q[4])
 {
-    const struct brc_convex *core = &e->erosion.core;
-    double m[3][3];
+    double m[3][3], d[3];
     brc_quat_matrix(m, q);
-    BRC_GROW(ctx, e->vertex, e->cap_vertices, core->n_vertices);
-    BRC_GROW(ctx, e->normal, e->cap_normals, core->n_faces);
     for (size_t v = 0; v < core->n_vertices; v++) {
-        double d[3];
         brc_sub(d, core->vertex[v], x);
-        brc_mat_mul_t(e->vertex[v], m, d);
+        brc_mat_mul_t(core->vertex[v], m, d);
     }
-    for (size_t i = 0; i < core->n_faces; i++)
-        brc_mat_mul_t(e->normal[i], m, core->plane[i].n);
-    struct poly_solid solid = {core->n_vertices, (const double(*)[3])e->vertex,
-                               core->n_faces,    core->first,
-                               core->loop,       (const double(*)[3])e->normal};
-    return poly_shapes_add(ctx, shapes, &solid);
+    for (size_t i = 0; i < core->n_faces; i++) {
+        brc_copy(d, core->plane[i].n);
+        brc_mat_mul_t(core->plane[i].n, m, d);
+    }
+    return poly_shapes_add(ctx, shapes, core);
 }
 
 /* What the core keeps of each of the cell's facets. A facet belongs to two cells, which erode it on
@@ -77,49 +56,49 @@ static int keep_areas(struct brc_context *ctx, struct brc_erosion *e, double (*e
 
 /* Mass, centre and inertia are those of the cell before erosion: a rock has no gaps where its
  * grains are rounded. */
-static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct eroder *e, size_t i)
+static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct brc_erosion *e, size_t i)
 {
     struct brc_context *ctx = sim->ctx;
     const struct brc_facets *f = &sim->specimen->facets;
     const struct poly_params *p = poly_params_of(sim);
     struct brc_bodies *b = &sim->bodies;
     double inertia[3][3], moment[3];
-    BRC_TRY(brc_erosion_begin(ctx, &e->erosion, f, i));
-    brc_convex_mass(&e->erosion.cell, &b->volume[i], b->x[i], inertia);
+    BRC_TRY(brc_erosion_begin(ctx, e, f, i));
+    brc_convex_mass(&e->cell, &b->volume[i], b->x[i], inertia);
     BRC_TRY(poly_principal(ctx, (const double(*)[3])inertia, moment, b->q[i]));
     b->true_mass[i] = p->density * b->volume[i];
     brc_scale(b->true_inertia[i], moment, p->density);
-    BRC_TRY(brc_erosion_core(ctx, &e->erosion, p->radius, b->x[i]));
-    if (e->erosion.core.n_faces == 0)
+    BRC_TRY(brc_erosion_core(ctx, e, p->radius, b->x[i]));
+    if (e->core.n_faces == 0)
         BRC_FAIL(
             ctx, BRC_ERR_INPUT,
             "polyhedra.radius = %g m erodes grain %zu (volume %g m3) away; all grains keep a core "
             "below %g m, the smallest inscribed sphere: use a smaller radius or larger grains",
-            p->radius, i, b->volume[i], smallest_inscribed(&e->erosion, f, p->radius));
-    BRC_TRY(add_core(ctx, &st->shapes, e, b->x[i], b->q[i]));
-    BRC_TRY(keep_areas(ctx, &e->erosion, st->eroded));
+            p->radius, i, b->volume[i], smallest_inscribed(e, f, p->radius));
+    BRC_TRY(keep_areas(ctx, e, st->eroded));
+    BRC_TRY(add_core(ctx, &st->shapes, &e->core, b->x[i], b->q[i]));
     /* The rounding reaches R farther than any vertex of the core. */
-    b->bounding_radius[i] = poly_shapes_reach(&st->shapes, i) + p->radius;
+    b->bounding_radius[i] = brc_convex_reach(&e->core, (double[3]){0, 0, 0}) + p->radius;
     return 0;
 }
 
 int poly_shape(struct brc_sim *sim, void *state)
 {
     struct poly_state *st = state;
-    struct eroder e = {0};
+    struct brc_erosion e = {0};
     int code = 0;
     st->eroded = brc_alloc(sim->ctx, sim->specimen->facets.n_facets, sizeof *st->eroded);
     if (st->eroded == NULL)
         return BRC_ERR_MEMORY;
     for (size_t i = 0; code == 0 && i < sim->bodies.n_grains; i++)
         code = shape_cell(sim, st, &e, i);
-    eroder_free(&e);
+    brc_erosion_free(&e);
     BRC_TRY(code);
     st->global_vertices =
-        brc_alloc(sim->ctx, st->shapes.vertex_first[st->shapes.n], sizeof *st->global_vertices);
+        brc_alloc(sim->ctx, st->shapes.first[st->shapes.n].vertex, sizeof *st->global_vertices);
     st->rotation = brc_alloc(sim->ctx, sim->bodies.n, sizeof *st->rotation);
     st->global_planes =
-        brc_alloc(sim->ctx, st->shapes.face_first[st->shapes.n], sizeof *st->global_planes);
+        brc_alloc(sim->ctx, st->shapes.first[st->shapes.n].face, sizeof *st->global_planes);
     if (st->global_vertices == NULL || st->rotation == NULL || st->global_planes == NULL)
         return BRC_ERR_MEMORY;
     /* Platens do not turn, but they are posed like all bodies. */

@@ -64,7 +64,7 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
     /* The distance is that of the walk, in the body frame. The loop has it from the planes and
      * vertices in space; both are right to round-off, and a contact goes over to the loop as
      * soon as its feature is sure. */
-    poly_to_space(out, rm, at.n);
+    brc_set(out, brc_dot(rm[0], at.n), brc_dot(rm[1], at.n), brc_dot(rm[2], at.n));
     poly_all3(vertex, v);
     poly_all3(normal, out);
     brc_mask touches =

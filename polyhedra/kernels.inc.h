@@ -12,20 +12,7 @@
 
 #include <string.h>
 
-/* --- sums of contacts
- * ----------------------------------------------------------------------------- */
-
-/* The points' sums of the contacts of a four. Sums are kept contact by contact, since points add to
- * whichever contact is theirs; four contacts side by side are their transpose. */
-BRC_LANES_INLINE void poly_sums_of_four(brc_lanes r[POLY_SUMS], const struct poly_batch *batch,
-                                        int32_t four, int n)
-{
-    for (int i = 0; i < n; i += BRC_LANES) {
-        for (int lane = 0; lane < BRC_LANES; lane++)
-            r[i + lane] = brc_lanes_at(&batch->sum[BRC_LANES * four + lane][i]);
-        brc_lanes_transpose(r + i);
-    }
-}
+/* --- sums of contacts ------------------------------------------------------------------------- */
 
 /* Work taken up by the source of a wrench over the step, by the trapezoid rule of ledger.h; the
  * wrench becomes the old one. */
@@ -48,28 +35,30 @@ BRC_LANES_INLINE brc_lanes poly_work(double (*old)[6], const struct poly_wrench4
 
 BRC_LANES_INLINE void poly_works_of_four(struct poly_batch *batch, struct poly_contact4 *g,
                                          const int32_t *contact, const struct poly_wrench4 *normal,
-                                         const struct poly_wrench4 *sticky, const bool viscous)
+                                         const struct poly_wrench4 *sticky, const int flags)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
     double dt = batch->sim->dt;
     g->work_normal = poly_work(columns->normal_old, normal, g, contact, dt);
     g->work_bond = poly_work(columns->bond_old, &g->bond, g, contact, dt);
-    if (viscous)
+    if (flags & POLY_VISCOUS)
         g->work_viscous = poly_work(columns->viscous_old, sticky, g, contact, dt);
 }
 
 /* Forces and moments of the contacts of a four, and what else they need. Where contacts may be
  * linearised, one work is booked for all that acts, since the tangent does not tell bond and
  * springs apart; otherwise each source has its own. */
-BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, const bool ledger,
-                                       const bool viscous, const bool linearised)
+BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, const int flags)
 {
+    const bool ledger = flags & POLY_LEDGER, viscous = flags & POLY_VISCOUS;
     const struct brc_contacts *c = batch->contacts;
     struct poly_contact4 *g = &batch->four[four];
     const int32_t *contact = batch->contact + BRC_LANES * four;
     brc_lanes s[POLY_SUMS];
     struct poly_wrench4 normal, sticky, all;
-    poly_sums_of_four(s, batch, four, viscous ? POLY_SUMS : POLY_SUM_SLID + 4);
+    /* kept contact by contact, since points add to whichever contact is theirs */
+    poly_gather_rows(s, batch->sum[BRC_LANES * four], POLY_SUMS, poly_in_turn,
+                     viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
     poly_set3(normal.f, s[0], s[1], s[2]);
     poly_set3(normal.m, s[3], s[4], s[5]);
     poly_set3(sticky.f, s[POLY_SUM_VISCOUS], s[POLY_SUM_VISCOUS + 1], s[POLY_SUM_VISCOUS + 2]);
@@ -86,130 +75,72 @@ BRC_LANES_INLINE void poly_finish_four(struct poly_batch *batch, int32_t four, c
     g->gap = brc_lanes_min(g->gap, brc_lanes_at(batch->nearest + BRC_LANES * four));
     g->stored = s[POLY_SUM_STORED];
     g->slid = s[POLY_SUM_SLID];
-    if (ledger && linearised) {
+    if (ledger && flags & POLY_TANGENTS) {
         g->work_normal = poly_work_of_four(c, &all, g, contact, batch->sim->dt) - g->slid;
         g->work_bond = brc_lanes_all(0);
     } else if (ledger) {
-        poly_works_of_four(batch, g, contact, &normal, &sticky, viscous);
+        poly_works_of_four(batch, g, contact, &normal, &sticky, flags);
     }
     poly_put_wrenches(c, &all, g, contact);
 }
 
-BRC_LANES_INLINE void poly_finish_kernel(struct poly_batch *batch, const bool ledger,
-                                         const bool viscous, const bool linearised)
+BRC_LANES_INLINE void poly_finish_kernel(struct poly_batch *batch, const int flags)
 {
     for (int32_t four = 0; BRC_LANES * four < batch->n_contacts; four++)
-        poly_finish_four(batch, four, ledger, viscous, linearised);
+        poly_finish_four(batch, four, flags);
 }
 
 /* --- choice ----------------------------------------------------------------------------------- */
 
-/* One function for each set of options. With options as variables the loop over points takes
- * branches for each four, and the compiler keeps what no option needs. */
-#define KERNEL(name, call)                                              \
-    __attribute__((flatten)) static void name(struct poly_batch *batch) \
-    {                                                                   \
-        call;                                                           \
+/* One function for each set of flags (enum poly_flags) that is met. With options as variables the
+ * loop over points takes branches for each four, and the compiler keeps what no option needs.
+ * `closed` has no tangents, since its springs change all the time; tangents go without viscosity;
+ * and without friction springs have no work to book. */
+#define MOTIONS(X)    X(motion, 0) X(motion, 8) X(motion, 16) X(motion, 24) X(motion, 32)
+#define LINEARISED(X) X(linearised, 0) X(linearised, 1)
+#define PLATENS(X)    X(platens, 0) X(platens, 1) X(platens, 2) X(platens, 3)
+
+#define FINISHES(X) X(finish, 0) X(finish, 1) X(finish, 2) X(finish, 3) X(finish, 8) X(finish, 9)
+
+#define LITERAL(X, rule)  X(rule, 0) X(rule, 2) X(rule, 4) X(rule, 5) X(rule, 6) X(rule, 7)
+#define TANGENTS(X, rule) LITERAL(X, rule) X(rule, 8) X(rule, 12) X(rule, 13)
+
+#define KERNEL(name, flags)                                                       \
+    __attribute__((flatten)) static void name##_##flags(struct poly_batch *batch) \
+    {                                                                             \
+        poly_##name##_kernel(batch, flags);                                       \
     }
-KERNEL(motion, poly_motion_kernel(batch, false, false, false))
-KERNEL(motion_torsion, poly_motion_kernel(batch, true, false, false))
-KERNEL(motion_linearised, poly_motion_kernel(batch, false, true, false))
-KERNEL(motion_torsion_linearised, poly_motion_kernel(batch, true, true, false))
-KERNEL(motion_platens, poly_motion_kernel(batch, false, false, true))
-KERNEL(finish, poly_finish_kernel(batch, false, false, false))
-KERNEL(finish_viscous, poly_finish_kernel(batch, false, true, false))
-KERNEL(finish_ledger, poly_finish_kernel(batch, true, false, false))
-KERNEL(finish_viscous_ledger, poly_finish_kernel(batch, true, true, false))
-KERNEL(finish_linearised, poly_finish_kernel(batch, false, false, true))
-KERNEL(finish_linearised_ledger, poly_finish_kernel(batch, true, false, true))
-KERNEL(linearised, poly_linearised_kernel(batch, false))
-KERNEL(linearised_ledger, poly_linearised_kernel(batch, true))
-KERNEL(platens, poly_platens_kernel(batch, false, false))
-KERNEL(platens_ledger, poly_platens_kernel(batch, false, true))
-KERNEL(platens_viscous, poly_platens_kernel(batch, true, false))
-KERNEL(platens_viscous_ledger, poly_platens_kernel(batch, true, true))
-#define POINTS(name, ...)                                                      \
-    KERNEL(closed_##name, poly_points_kernel(batch, POLY_CLOSED, __VA_ARGS__)) \
-    LINEAR_POINTS(name, __VA_ARGS__)
-#define LINEAR_POINTS(name, ...)                                               \
-    KERNEL(strict_##name, poly_points_kernel(batch, POLY_STRICT, __VA_ARGS__)) \
-    KERNEL(merged_##name, poly_points_kernel(batch, POLY_MERGED, __VA_ARGS__))
-POINTS(plain, false, false, false, false)
-POINTS(viscous, false, false, true, false)
-POINTS(friction, false, true, false, false)
-POINTS(friction_ledger, false, true, false, true)
-POINTS(friction_viscous, false, true, true, false)
-POINTS(friction_viscous_ledger, false, true, true, true)
-LINEAR_POINTS(linearised, true, false, false, false)
-LINEAR_POINTS(linearised_friction, true, true, false, false)
-LINEAR_POINTS(linearised_friction_ledger, true, true, false, true)
-#undef LINEAR_POINTS
-#undef POINTS
-#undef KERNEL
-
-__attribute__((flatten)) static void pose(const struct brc_sim *sim, const struct poly_state *st)
-{
-    poly_pose_cores(sim, st);
-}
-
-__attribute__((flatten)) static int list(struct brc_context *ctx, struct poly_list *l,
-                                         const struct poly_pair *p, enum poly_rule rule,
-                                         double skin, double *allowance)
-{
-    return poly_list_all(ctx, l, p, rule, skin, allowance);
-}
-
-/* Without `closed`, whose springs change all the time, and without viscosity. */
-static struct poly_loop poly_linearised_loop(const struct poly_params *p, bool friction,
-                                             bool ledger)
-{
-    static poly_kernel *const points[2][2][2] = {
-        {{strict_linearised, strict_linearised},
-         {strict_linearised_friction, strict_linearised_friction_ledger}},
-        {{merged_linearised, merged_linearised},
-         {merged_linearised_friction, merged_linearised_friction_ledger}}};
-    return (struct poly_loop){.motion = BRC_OPTION(p->torsion) ? motion_torsion_linearised
-                                                               : motion_linearised,
-                              .points = points[p->features == POLY_MERGED][friction][ledger],
-                              .finish = ledger ? finish_linearised_ledger : finish_linearised};
-}
-
-static struct poly_loop poly_literal_loop(const struct poly_params *p, bool friction, bool viscous,
-                                          bool ledger)
-{
-#define BY_OPTIONS(rule)                                                  \
-    {                                                                     \
-        {{rule##_plain, rule##_plain}, {rule##_viscous, rule##_viscous}}, \
-            {{rule##_friction, rule##_friction_ledger},                   \
-             {rule##_friction_viscous, rule##_friction_viscous_ledger}},  \
-    }
-    static poly_kernel *const points[3][2][2][2] = {BY_OPTIONS(closed), BY_OPTIONS(strict),
-                                                    BY_OPTIONS(merged)};
-#undef BY_OPTIONS
-    static poly_kernel *const finishes[2][2] = {{finish, finish_ledger},
-                                                {finish_viscous, finish_viscous_ledger}};
-    return (struct poly_loop){.motion = BRC_OPTION(p->torsion) ? motion_torsion : motion,
-                              .points = points[p->features][friction][viscous][ledger],
-                              .finish = finishes[viscous][ledger]};
-}
+#define ENTRY(name, flags) [flags] = name##_##flags,
+MOTIONS(KERNEL)
+FINISHES(KERNEL)
+PLATENS(KERNEL)
+LINEARISED(KERNEL)
+LITERAL(KERNEL, closed)
+TANGENTS(KERNEL, strict)
+TANGENTS(KERNEL, merged)
 
 /* Platens have the literal loop in either case. */
 static struct poly_kernels poly_choose_kernels(const struct brc_sim *sim)
 {
-    static poly_kernel *const at_platens[2][2] = {{platens, platens_ledger},
-                                                  {platens_viscous, platens_viscous_ledger}};
+    static poly_kernel *const motion[] = {MOTIONS(ENTRY)}, *const finish[] = {FINISHES(ENTRY)};
+    static poly_kernel *const platens[] = {PLATENS(ENTRY)}, *const moves[] = {LINEARISED(ENTRY)};
+    static poly_kernel *const closed[] = {LITERAL(ENTRY, closed)};
+    static poly_kernel *const strict[] = {TANGENTS(ENTRY, strict)};
+    static poly_kernel *const merged[] = {TANGENTS(ENTRY, merged)};
+    static poly_kernel *const *const points[] = {closed, strict, merged};
     const struct poly_params *p = poly_params_of(sim);
-    bool friction = BRC_OPTION(p->mu > 0 && p->kt > 0), ledger = BRC_OPTION(sim->run.ledger);
-    bool viscous = BRC_OPTION(poly_is_viscous(sim)), linear = poly_is_linearised(sim);
-    struct poly_loop literal = poly_literal_loop(p, friction, viscous, ledger);
+    int ledger = BRC_OPTION(sim->run.ledger) ? POLY_LEDGER : 0;
+    int viscous = BRC_OPTION(poly_is_viscous(sim)) ? POLY_VISCOUS : 0;
+    int springs = BRC_OPTION(p->mu > 0 && p->kt > 0) ? POLY_FRICTION | ledger : 0;
+    int torsion = BRC_OPTION(p->torsion) ? POLY_TORSION : 0;
+    int tangents = poly_is_linearised(sim) ? POLY_TANGENTS : 0, own = tangents ? tangents : viscous;
     return (struct poly_kernels){
-        .pose = pose,
-        .list = list,
-        .pairs = linear ? poly_linearised_loop(p, friction, ledger) : literal,
-        .platens = {motion_platens, at_platens[viscous][ledger], literal.finish},
-        .linearised = !linear  ? NULL
-                      : ledger ? linearised_ledger
-                               : linearised};
+        .pose = poly_pose_cores,
+        .list = poly_list_all,
+        .pairs = {motion[torsion | tangents], points[p->features][own | springs],
+                  finish[own | ledger]},
+        .platens = {motion[POLY_PLATENS], platens[viscous | ledger], finish[viscous | ledger]},
+        .linearised = tangents ? moves[ledger] : NULL};
 }
 
 #endif

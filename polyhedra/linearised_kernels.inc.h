@@ -73,7 +73,7 @@ BRC_LANES_INLINE brc_mask poly_turns_far(const struct poly_batch *batch,
  * lanes alone would cost all of them; those that stay are taken again with the next ones, so that
  * no lane's result depends on the others. */
 BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_index4 *i, int n,
-                                          const bool ledger)
+                                          const int flags)
 {
     const struct brc_contacts *c = batch->contacts;
     const struct poly_contacts *columns = c->model_columns;
@@ -87,7 +87,7 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
         i->b[k] = c->b[i->contact[k]];
     }
     poly_motion_of_four(batch, &g, &f, i, false);
-    poly_motion_gather(&s, columns, i->contact);
+    poly_gather_rows((brc_lanes *)&s, columns->motion[0], POLY_MOTION, i->contact, POLY_MOTION);
     poly_motion_add_step(&s, &f, &g, batch->sim->dt);
     brc_mask stays = brc_lanes_less(s.path, s.end) & ~poly_turns_far(batch, &s);
     if (brc_lanes_any(~stays)) {
@@ -100,8 +100,8 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
         return left;
     }
     poly_tangent_forces(&w, columns, &s, i->contact);
-    poly_motion_put(columns, i->contact, &s);
-    if (ledger) {
+    poly_put_rows(columns->motion[0], POLY_MOTION, i->contact, (brc_lanes *)&s, POLY_MOTION);
+    if (flags & POLY_LEDGER) {
         brc_lanes work = poly_work_of_four(c, &w, &g, i->contact, batch->sim->dt);
         for (int k = 0; k < n; k++)
             batch->sim->bodies.energy[i->a[k]][BRC_ACCOUNT_NORMAL] += work[k];
@@ -112,7 +112,7 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
 
 /* The number is written for every contact and counted for those that are linearised, so that
  * nothing branches. */
-BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const bool ledger)
+BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const int flags)
 {
     const struct brc_contacts *c = batch->contacts;
     const struct poly_contacts *columns = c->model_columns;
@@ -122,10 +122,10 @@ BRC_LANES_INLINE void poly_linearised_kernel(struct poly_batch *batch, const boo
         i.contact[n] = (int32_t)contact;
         n += columns->is_linearised[contact];
         if (n == BRC_LANES)
-            n = poly_move_linearised(batch, &i, n, ledger);
+            n = poly_move_linearised(batch, &i, n, flags);
     }
     while (n > 0)
-        n = poly_move_linearised(batch, &i, n, ledger);
+        n = poly_move_linearised(batch, &i, n, flags);
 }
 
 #endif

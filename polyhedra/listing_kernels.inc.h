@@ -323,9 +323,9 @@ static int reserve(struct brc_context *ctx, struct poly_list *l, const struct po
     return 0;
 }
 
-BRC_LANES_INLINE int poly_list_all(struct brc_context *ctx, struct poly_list *l,
-                                   const struct poly_pair *p, enum poly_rule rule, double skin,
-                                   double *allowance)
+__attribute__((flatten)) static inline int
+poly_list_all(struct brc_context *ctx, struct poly_list *l, const struct poly_pair *p,
+              enum poly_rule rule, double skin, double *allowance)
 {
     double reach = p->contact_distance + skin;
     l->n = 0;

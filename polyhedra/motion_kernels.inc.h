@@ -88,17 +88,60 @@ BRC_LANES_INLINE brc_lanes poly_power(const struct poly_wrench4 *w, const struct
     return brc_lanes_dot(w->f, g->dv) - brc_lanes_dot(w->m, g->wa) + brc_lanes_dot(tb, g->wb);
 }
 
-/* Lane i to the frame of contact i. Contact by contact, since a point wants all of one contact,
- * and its neighbours in the lanes belong to others. */
-BRC_LANES_INLINE void poly_put_frames(double (*to)[POLY_FRAME], struct poly_frame4 *f)
+/* Values 0 to n - 1 of what stands at four places, as fours. */
+BRC_LANES_INLINE void poly_gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int n)
 {
-    brc_lanes *part = (brc_lanes *)f;
-    for (int k = 0; k < POLY_FRAME; k += BRC_LANES) {
-        brc_lanes_transpose(part + k);
+    for (int k = 0; k < n; k += BRC_LANES)
+        brc_lanes_gather4(
+            r + k, (const double *const[]){from[0] + k, from[1] + k, from[2] + k, from[3] + k});
+}
+
+/* Places of four rows of a column of that width. */
+BRC_LANES_INLINE void poly_rows(double *at[BRC_LANES], double *column, int32_t width,
+                                const int32_t row[BRC_LANES])
+{
+    for (int i = 0; i < BRC_LANES; i++)
+        at[i] = column + (ptrdiff_t)width * row[i];
+}
+
+/* Values 0 to n - 1 of four rows, as fours. */
+BRC_LANES_INLINE void poly_gather_rows(brc_lanes *r, double *column, int32_t width,
+                                       const int32_t row[BRC_LANES], int n)
+{
+    double *from[BRC_LANES];
+    poly_rows(from, column, width, row);
+    poly_gather_fours(r, (const double *const *)from, n);
+}
+
+/* From fours, which are lost, to four rows. Row by row, since a point wants all of one contact, and
+ * its neighbours in the lanes belong to others. */
+BRC_LANES_INLINE void poly_put_rows(double *column, int32_t width, const int32_t row[BRC_LANES],
+                                    brc_lanes *r, int n)
+{
+    double *to[BRC_LANES];
+    poly_rows(to, column, width, row);
+    for (int k = 0; k < n; k += BRC_LANES) {
+        brc_lanes_transpose(r + k);
         for (int i = 0; i < BRC_LANES; i++)
-            brc_lanes_put(to[i] + k, part[k + i]);
+            brc_lanes_put(to[i] + k, r[k + i]);
     }
 }
+
+/* Adds them, one lane after the other: rows may be the same. */
+BRC_LANES_INLINE void poly_add_rows(double *column, int32_t width, const int32_t row[BRC_LANES],
+                                    brc_lanes *r, int n)
+{
+    double *to[BRC_LANES];
+    poly_rows(to, column, width, row);
+    for (int k = 0; k < n; k += BRC_LANES) {
+        brc_lanes_transpose(r + k);
+        for (int i = 0; i < BRC_LANES; i++)
+            brc_lanes_put(to[i] + k, brc_lanes_at(to[i] + k) + r[k + i]);
+    }
+}
+
+/* Rows that follow each other. */
+static const int32_t poly_in_turn[BRC_LANES] = {0, 1, 2, 3};
 
 /* Bound of the path that points of b have made in the frame of a in this step. Motions that both
  * share, turns included, do not count; the last term is of second order in the turn. a's vertices
@@ -163,15 +206,6 @@ BRC_LANES_INLINE void poly_motion_of_four(const struct poly_batch *batch, struct
                                      batch->sim->dt);
 }
 
-/* Values first and on of what each of four contacts has in its column, as fours. */
-BRC_LANES_INLINE void poly_gather_fours(brc_lanes *r, const double *const from[BRC_LANES], int n)
-{
-    for (int k = 0; k < n; k += BRC_LANES) {
-        const double *const p[BRC_LANES] = {from[0] + k, from[1] + k, from[2] + k, from[3] + k};
-        brc_lanes_gather4(r + k, p);
-    }
-}
-
 /* Four bonds, as POLY_BOND has them. */
 struct poly_halves4 {
     brc_lanes ca[3], area, cb[3], length, na[3], none_na, nb[3], none_nb, ta[3], none_ta, tb[3],
@@ -201,10 +235,9 @@ BRC_LANES_INLINE void poly_bond_constants(struct poly_bonds4 *bonds, const struc
 BRC_LANES_INLINE void poly_gather_rotation(brc_lanes r[9], double (*rotation)[3][3],
                                            const int32_t i[BRC_LANES])
 {
-    const double *const from[BRC_LANES] = {rotation[i[0]][0], rotation[i[1]][0], rotation[i[2]][0],
-                                           rotation[i[3]][0]};
-    poly_gather_fours(r, from, 8);
-    r[8] = (brc_lanes){from[0][8], from[1][8], from[2][8], from[3][8]};
+    poly_gather_rows(r, rotation[0][0], 9, i, 8);
+    r[8] = (brc_lanes){rotation[i[0]][2][2], rotation[i[1]][2][2], rotation[i[2]][2][2],
+                       rotation[i[3]][2][2]};
 }
 
 /* The hold of a platen is half a bond: without torsion and, unless it holds in all directions,
@@ -228,18 +261,17 @@ BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
                                              const struct brc_sim *sim, const struct poly_state *st,
                                              const struct brc_contacts *c,
                                              const struct poly_index4 *i, const brc_lanes x[3],
-                                             const bool torsion, const bool is_platens)
+                                             const int flags)
 {
+    const bool torsion = flags & POLY_TORSION;
     const struct poly_contacts *columns = c->model_columns;
-    const double *const from[BRC_LANES] = {
-        columns->bond[i->contact[0]], columns->bond[i->contact[1]], columns->bond[i->contact[2]],
-        columns->bond[i->contact[3]]};
     const uint8_t status[BRC_LANES] = {c->status[i->contact[0]], c->status[i->contact[1]],
                                        c->status[i->contact[2]], c->status[i->contact[3]]};
     brc_mask intact = brc_lanes_equal(status, BRC_INTACT);
     brc_lanes ra[9], rb[9], na[3], nb[3], ta[3], tb[3];
     struct poly_halves4 halves;
-    poly_gather_fours((brc_lanes *)&halves, from, torsion ? POLY_BOND : POLY_BOND_TA);
+    poly_gather_rows((brc_lanes *)&halves, columns->bond[0], POLY_BOND, i->contact,
+                     torsion ? POLY_BOND : POLY_BOND_TA);
     poly_bond_constants(bonds, poly_params_of(sim), &halves, intact, torsion);
     poly_gather_rotation(ra, st->rotation, i->a);
     poly_gather_rotation(rb, st->rotation, i->b);
@@ -247,7 +279,7 @@ BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
     poly_to_space4(pose->pb, rb, halves.cb);
     poly_add3(pose->pb, pose->pb, x);
     poly_to_space4(nb, rb, halves.nb);
-    if (is_platens) {
+    if (flags & POLY_PLATENS) {
         poly_bonds_to_holds(bonds, pose, sim, i, nb);
     } else {
         poly_to_space4(na, ra, halves.na);
@@ -265,15 +297,14 @@ BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
 
 /* Wrench, stiffness, energy and breaking of the bonds of four contacts. */
 BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_contact4 *g,
-                                       const struct poly_index4 *i, const bool torsion,
-                                       const bool linearised, const bool is_platens)
+                                       const struct poly_index4 *i, const int flags)
 {
     struct poly_bonds4 bonds;
     struct poly_bond_pose4 pose;
     struct poly_bond_state4 r;
     brc_lanes back[3], c[3];
-    brc_mask intact = poly_bonds_of_four(&bonds, &pose, batch->sim, batch->st, batch->contacts, i,
-                                         g->x, torsion, is_platens);
+    brc_mask intact =
+        poly_bonds_of_four(&bonds, &pose, batch->sim, batch->st, batch->contacts, i, g->x, flags);
     poly_bond_law(&r, &bonds, &pose);
     g->opening = r.opening;
     g->bond_stored = r.energy;
@@ -287,7 +318,7 @@ BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_con
     g->k[0] = stiff;
     g->k[1] = stiff * brc_lanes_dot(r.arm, r.arm) + bonds.ktheta;
     g->k[2] = stiff * brc_lanes_dot(back, back) + bonds.ktheta;
-    if (!linearised)
+    if (!(flags & POLY_TANGENTS))
         return;
     g->bond_kn = brc_lanes_where(poly_positive(r.opening), bonds.kn);
     g->bond_kt = bonds.kt;
@@ -343,27 +374,6 @@ struct poly_motion4 {
     brc_lanes d[3], path, turn[3], end, both[3], stored;
 };
 
-BRC_LANES_INLINE void poly_motion_gather(struct poly_motion4 *s,
-                                         const struct poly_contacts *columns,
-                                         const int32_t contact[BRC_LANES])
-{
-    const double *const from[BRC_LANES] = {columns->motion[contact[0]], columns->motion[contact[1]],
-                                           columns->motion[contact[2]],
-                                           columns->motion[contact[3]]};
-    poly_gather_fours((brc_lanes *)s, from, POLY_MOTION);
-}
-
-BRC_LANES_INLINE void poly_motion_put(const struct poly_contacts *columns,
-                                      const int32_t contact[BRC_LANES], struct poly_motion4 *s)
-{
-    brc_lanes *part = (brc_lanes *)s;
-    for (int k = 0; k < POLY_MOTION; k += BRC_LANES) {
-        brc_lanes_transpose(part + k);
-        for (int i = 0; i < BRC_LANES; i++)
-            brc_lanes_put(columns->motion[contact[i]] + k, part[k + i]);
-    }
-}
-
 /* Adds the motion of the step. */
 BRC_LANES_INLINE void poly_motion_add_step(struct poly_motion4 *s, const struct poly_frame4 *f,
                                            const struct poly_contact4 *g, double dt)
@@ -387,7 +397,7 @@ BRC_LANES_INLINE brc_lanes poly_frames_since(const struct poly_batch *batch, str
     const struct poly_contacts *columns = batch->contacts->model_columns;
     const brc_lanes none = brc_lanes_all(0);
     struct poly_motion4 s;
-    poly_motion_gather(&s, columns, i->contact);
+    poly_gather_rows((brc_lanes *)&s, columns->motion[0], POLY_MOTION, i->contact, POLY_MOTION);
     poly_motion_add_step(&s, f, g, batch->sim->dt);
     for (int k = 0; k < 3; k++) {
         f->slip[k] = s.d[k];
@@ -399,10 +409,10 @@ BRC_LANES_INLINE brc_lanes poly_frames_since(const struct poly_batch *batch, str
     return s.path;
 }
 
-BRC_LANES_INLINE void poly_motion_kernel(struct poly_batch *batch, const bool torsion,
-                                         const bool linearised, const bool is_platens)
+BRC_LANES_INLINE void poly_motion_kernel(struct poly_batch *batch, const int flags)
 {
     const struct brc_contacts *c = batch->contacts;
+    const bool is_platens = flags & POLY_PLATENS;
     poly_clear((brc_lanes *)batch->sum, sizeof batch->sum);
     for (int32_t four = 0; BRC_LANES * four < batch->n_contacts; four++) {
         struct poly_contact4 *g = &batch->four[four];
@@ -412,17 +422,18 @@ BRC_LANES_INLINE void poly_motion_kernel(struct poly_batch *batch, const bool to
         poly_index_of(&i, batch, four);
         poly_motion_of_four(batch, g, &f, &i, is_platens);
         brc_lanes used = g->path;
-        if (linearised)
+        if (flags & POLY_TANGENTS)
             used = poly_frames_since(batch, &f, g, &i);
         for (int k = 0; k < BRC_LANES; k++)
             has_bond |= c->status[i.contact[k]] == BRC_INTACT;
         g->k[0] = g->k[1] = g->k[2] = g->broken = g->bond_stored = brc_lanes_all(0);
         poly_clear((brc_lanes *)&g->bond, sizeof g->bond);
         if (has_bond)
-            poly_bond_forces(batch, g, &i, torsion, linearised, is_platens);
+            poly_bond_forces(batch, g, &i, flags);
         if (!is_platens)
             poly_skins_of_four(batch, g, used, four);
-        poly_put_frames(batch->frame + BRC_LANES * four, &f);
+        poly_put_rows(batch->frame[BRC_LANES * four], POLY_FRAME, poly_in_turn, (brc_lanes *)&f,
+                      POLY_FRAME);
     }
 }
 

@@ -53,7 +53,7 @@ static inline int32_t poly_platen_vertex(const struct brc_sim *sim, const struct
                                          size_t contact, size_t p)
 {
     const struct poly_points *points = sim->platens.point_columns;
-    return (int32_t)st->shapes.vertex_first[sim->platens.a[contact]] + points->i[p];
+    return (int32_t)st->shapes.first[sim->platens.a[contact]].vertex + points->i[p];
 }
 
 /* A point of a platen contact alone. */

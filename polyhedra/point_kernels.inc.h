@@ -172,39 +172,22 @@ BRC_LANES_INLINE void poly_add_tangents(struct poly_batch *batch, const int32_t 
             k[6 * j + i + 3] = moment[i];
         }
     }
-    for (int n = 0; n < 36; n += BRC_LANES) {
-        brc_lanes_transpose(k + n);
-        for (int i = 0; i < BRC_LANES; i++) {
-            double *to = batch->tangent[contact[i]] + n;
-            brc_lanes_put(to, brc_lanes_at(to) + k[n + i]);
-        }
-    }
+    poly_add_rows(batch->tangent[0], 36, contact, k, 36);
     for (int i = 0; i < BRC_LANES; i++)
         if (t->weight[i] > 0)
             batch->valid_path[contact[i]] =
                 poly_least(batch->valid_path[contact[i]], t->valid_path[i]);
 }
 
-/* Adds the lanes to the sums of their contacts, one after the other: the points of a contact are
- * summed in the order of the lists. */
-BRC_LANES_INLINE void poly_add_sums(struct poly_batch *batch, const int32_t contact[BRC_LANES],
-                                    brc_lanes *sums, int end)
-{
-    for (int k = 0; k < end; k += BRC_LANES) {
-        brc_lanes_transpose(sums + k);
-        for (int i = 0; i < BRC_LANES; i++) {
-            double *to = batch->sum[contact[i]] + k;
-            brc_lanes_put(to, brc_lanes_at(to) + sums[k + i]); /* eq:gt12:6, eq:gt12:7 */
-        }
-    }
-}
-
 /* Forces of four points, which touch or are apart. Returns where they slip. */
-BRC_LANES_INLINE brc_mask poly_forces_of_points(
-    const struct poly_batch *batch, struct poly_sums4 *s, const struct poly_geometry4 *t,
-    const struct poly_frame4 *frame, struct poly_springs4 *springs, const brc_lanes arm[3],
-    const bool linearised, const bool friction, const bool viscous, const bool ledger)
+BRC_LANES_INLINE brc_mask poly_forces_of_points(const struct poly_batch *batch,
+                                                struct poly_sums4 *s,
+                                                const struct poly_geometry4 *t,
+                                                const struct poly_frame4 *frame,
+                                                struct poly_springs4 *springs,
+                                                const brc_lanes arm[3], const int flags)
 {
+    const bool friction = flags & POLY_FRICTION, viscous = flags & POLY_VISCOUS;
     const struct poly_spring_law *law = &batch->law;
     brc_lanes back[3], u[3], old = springs->weight, stiff = brc_lanes_all(law->kn);
     brc_mask touches = poly_positive(t->weight), slips = {0};
@@ -224,9 +207,9 @@ BRC_LANES_INLINE brc_mask poly_forces_of_points(
         const brc_lanes turn[3] = {frame->along[0].turn, frame->along[1].turn,
                                    frame->along[2].turn};
         struct poly_slip4 slip = {.twirl = brc_lanes_dot(turn, t->n), .limit = frame->limit};
-        poly_scale3(slip.du, u, brc_lanes_all(linearised ? 1 : batch->sim->dt));
+        poly_scale3(slip.du, u, brc_lanes_all(flags & POLY_TANGENTS ? 1 : batch->sim->dt));
         slips = poly_shear_force(springs, s, t, &slip, law->kt, arm, brc_lanes_where(touches, old),
-                                 ledger);
+                                 flags & POLY_LEDGER);
     } else {
         poly_clear((brc_lanes *)&s->shear, sizeof s->shear);
     }
@@ -262,9 +245,7 @@ BRC_LANES_INLINE void poly_find_changes(struct poly_batch *batch, const struct p
 
 /* Forces of the four points from task on, of which the first n count. */
 BRC_LANES_INLINE void poly_act_on_points(struct poly_batch *batch, const struct poly_task *task,
-                                         int32_t n, const struct poly_geometry4 *t,
-                                         const bool linearised, const bool friction,
-                                         const bool viscous, const bool ledger)
+                                         int32_t n, const struct poly_geometry4 *t, const int flags)
 {
     const struct poly_points *points = batch->contacts->point_columns;
     const double *frame[BRC_LANES], *from[BRC_LANES];
@@ -277,17 +258,17 @@ BRC_LANES_INLINE void poly_act_on_points(struct poly_batch *batch, const struct 
         frame[k] = batch->frame[contact[k]];
         from[k] = points->spring[task[k].point];
     }
-    poly_gather_fours((brc_lanes *)&f, frame, friction || viscous ? POLY_FRAME : POLY_FRAME_SLIP);
+    poly_gather_fours((brc_lanes *)&f, frame,
+                      flags & (POLY_FRICTION | POLY_VISCOUS) ? POLY_FRAME : POLY_FRAME_SLIP);
     poly_gather_fours((brc_lanes *)&springs, from, POLY_SPRING);
     brc_lanes arm[3], old = springs.weight;
     poly_sub3(arm, t->x, f.xa);
-    brc_mask slips = poly_forces_of_points(batch, &s, t, &f, &springs, arm, linearised, friction,
-                                           viscous, ledger);
+    brc_mask slips = poly_forces_of_points(batch, &s, t, &f, &springs, arm, flags);
     poly_find_changes(batch, task, n, t, old);
     const bool *wanted = batch->will_linearise;
-    if (linearised &&
+    if (flags & POLY_TANGENTS &&
         (wanted[contact[0]] | wanted[contact[1]] | wanted[contact[2]] | wanted[contact[3]]))
-        poly_add_tangents(batch, contact, t, springs.xi, slips, arm, friction);
+        poly_add_tangents(batch, contact, t, springs.xi, slips, arm, flags & POLY_FRICTION);
     brc_lanes *part = (brc_lanes *)&springs;
     brc_lanes_transpose(part);
     brc_lanes_transpose(part + BRC_LANES);
@@ -298,7 +279,9 @@ BRC_LANES_INLINE void poly_act_on_points(struct poly_batch *batch, const struct 
             poly_least(batch->nearest[contact[k]], t->weight[k] > 0 ? -t->delta[k] : HUGE_VAL);
     }
     s.none = brc_lanes_all(0);
-    poly_add_sums(batch, contact, (brc_lanes *)&s, viscous ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
+    /* one contact after the other, each in the order of its points: eq:gt12:6, eq:gt12:7 */
+    poly_add_rows(batch->sum[0], POLY_SUMS, contact, (brc_lanes *)&s,
+                  flags & POLY_VISCOUS ? POLY_SUMS : POLY_SUM_SLID + BRC_LANES);
 }
 
 /* Ends a list at a whole four: what is left over goes to a contact that nobody reads. Returns its
@@ -314,9 +297,7 @@ BRC_LANES_INLINE int32_t poly_end_list(struct poly_batch *batch, int list)
 }
 
 BRC_LANES_INLINE void poly_points_of_list(struct poly_batch *batch, const int list,
-                                          const enum poly_rule rule, const bool linearised,
-                                          const bool friction, const bool viscous,
-                                          const bool ledger)
+                                          const enum poly_rule rule, const int flags)
 {
     const struct poly_task *task = batch->task[list];
     int32_t n = poly_end_list(batch, list);
@@ -328,31 +309,44 @@ BRC_LANES_INLINE void poly_points_of_list(struct poly_batch *batch, const int li
             poly_edges_of_tasks(&t, batch, task + k, rule);
         else
             poly_vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT);
-        poly_act_on_points(batch, task + k, n - k, &t, linearised, friction, viscous, ledger);
+        poly_act_on_points(batch, task + k, n - k, &t, flags);
     }
 }
 
 BRC_LANES_INLINE void poly_points_kernel(struct poly_batch *batch, const enum poly_rule rule,
-                                         const bool linearised, const bool friction,
-                                         const bool viscous, const bool ledger)
+                                         const int flags)
 {
-    poly_points_of_list(batch, POLY_FLAT, rule, linearised, friction, viscous, ledger);
+    poly_points_of_list(batch, POLY_FLAT, rule, flags);
     if (rule == POLY_MERGED)
-        poly_points_of_list(batch, POLY_SHARP, rule, linearised, friction, viscous, ledger);
-    poly_points_of_list(batch, POLY_CROSSING, rule, linearised, friction, viscous, ledger);
-    poly_points_of_list(batch, POLY_KNOWN, rule, linearised, friction, viscous, ledger);
+        poly_points_of_list(batch, POLY_SHARP, rule, flags);
+    poly_points_of_list(batch, POLY_CROSSING, rule, flags);
+    poly_points_of_list(batch, POLY_KNOWN, rule, flags);
+}
+
+BRC_LANES_INLINE void poly_closed_kernel(struct poly_batch *batch, const int flags)
+{
+    poly_points_kernel(batch, POLY_CLOSED, flags);
+}
+
+BRC_LANES_INLINE void poly_strict_kernel(struct poly_batch *batch, const int flags)
+{
+    poly_points_kernel(batch, POLY_STRICT, flags);
+}
+
+BRC_LANES_INLINE void poly_merged_kernel(struct poly_batch *batch, const int flags)
+{
+    poly_points_kernel(batch, POLY_MERGED, flags);
 }
 
 /* Points of platens, whose friction is that of each contact. */
-BRC_LANES_INLINE void poly_platens_kernel(struct poly_batch *batch, const bool viscous,
-                                          const bool ledger)
+BRC_LANES_INLINE void poly_platens_kernel(struct poly_batch *batch, const int flags)
 {
     const struct poly_task *task = batch->task[POLY_FLAT];
     int32_t n = poly_end_list(batch, POLY_FLAT);
     for (int32_t k = 0; k < n; k += BRC_LANES) {
         struct poly_geometry4 t;
         poly_platens_of_tasks(&t, batch, task + k);
-        poly_act_on_points(batch, task + k, n - k, &t, false, true, viscous, ledger);
+        poly_act_on_points(batch, task + k, n - k, &t, flags | POLY_FRICTION);
     }
 }
 

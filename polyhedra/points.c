@@ -81,9 +81,9 @@ static void set_edges(const struct poly_batch *batch, int32_t i, size_t p)
     const struct poly_shapes *s = &batch->st->shapes;
     const struct poly_points *points = batch->contacts->point_columns;
     int32_t a = batch->a[i], b = batch->b[i], *item = points->item[p];
-    const int32_t *ea = s->end[s->edge_first[a] + (size_t)points->i[p]];
-    const int32_t *eb = s->end[s->edge_first[b] + (size_t)points->j[p]];
-    int32_t va = (int32_t)s->vertex_first[a], vb = (int32_t)s->vertex_first[b];
+    const int32_t *ea = s->end[s->first[a].edge + (size_t)points->i[p]];
+    const int32_t *eb = s->end[s->first[b].edge + (size_t)points->j[p]];
+    int32_t va = (int32_t)s->first[a].vertex, vb = (int32_t)s->first[b].vertex;
     for (int k = 0; k < 2; k++) {
         item[POLY_ITEM_END + k] = va + ea[k];
         item[POLY_ITEM_END + 2 + k] = vb + eb[k];
@@ -120,42 +120,28 @@ static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool
     int32_t own = of_b ? batch->b[i] : batch->a[i], other = of_b ? batch->a[i] : batch->b[i];
     int32_t vertex = of_b ? points->j[p] : points->i[p];
     int32_t feature = of_b ? points->i[p] : points->j[p], index = merged ? feature >> 2 : feature;
-    int32_t first = (int32_t)s->vertex_first[other], *item = points->item[p];
+    int32_t first = (int32_t)s->first[other].vertex, *item = points->item[p];
     bool flat = !merged || (feature & 3) == POLY_ON_FACE;
-    item[POLY_ITEM_VERTEX] = (int32_t)s->vertex_first[own] + vertex;
+    item[POLY_ITEM_VERTEX] = (int32_t)s->first[own].vertex + vertex;
     item[POLY_ITEM_LIST] = (flat ? POLY_FLAT : POLY_SHARP) + (of_b ? 0 : POLY_OF_A) +
                            set_near(item + POLY_ITEM_NEAR, points->near[p], first,
-                                    (int32_t)s->vertex_first[other + 1]);
+                                    (int32_t)s->first[other + 1].vertex);
     if (flat) {
-        item[POLY_ITEM_FEATURE] = (int32_t)s->face_first[other] + index;
+        item[POLY_ITEM_FEATURE] = (int32_t)s->first[other].face + index;
         return;
     }
-    const int32_t *end = s->end[s->edge_first[other] + (size_t)index];
+    const int32_t *end = s->end[s->first[other].edge + (size_t)index];
     bool on_edge = (feature & 3) == POLY_ON_EDGE;
     for (int k = 0; k < 2; k++)
         item[POLY_ITEM_FEATURE + k] = first + (on_edge ? end[k] : index);
 }
 
-/* n points that have their items, into their lists: each is put at the end of all lists, one of
- * which grows. Nothing branches, and the ends stay in registers. */
+/* n points that have their items, into their lists. */
 static void list_items(struct poly_batch *batch, const struct poly_points *points, int32_t i,
                        size_t p, size_t n)
 {
-    int32_t flat = batch->n_tasks[POLY_FLAT], sharp = batch->n_tasks[POLY_SHARP];
-    int32_t crossing = batch->n_tasks[POLY_CROSSING];
-    for (size_t q = p; q < p + n; q++) {
-        struct poly_task task = {.contact = i, .point = (int32_t)q};
-        int32_t list = points->item[q][POLY_ITEM_LIST] & POLY_LIST;
-        batch->task[POLY_FLAT][flat] = task;
-        batch->task[POLY_SHARP][sharp] = task;
-        batch->task[POLY_CROSSING][crossing] = task;
-        flat += list == POLY_FLAT;
-        sharp += list == POLY_SHARP;
-        crossing += list == POLY_CROSSING;
-    }
-    batch->n_tasks[POLY_FLAT] = flat;
-    batch->n_tasks[POLY_SHARP] = sharp;
-    batch->n_tasks[POLY_CROSSING] = crossing;
+    for (size_t q = p; q < p + n; q++)
+        add_task(batch, points->item[q][POLY_ITEM_LIST] & POLY_LIST, i, q);
 }
 
 /* Gives a point its item and lists it. What is computed where depends on the pose alone, not on

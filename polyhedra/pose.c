@@ -26,8 +26,8 @@ void poly_pair_of(struct poly_pair *p, const struct brc_sim *sim, const struct p
                             .xb = sim->bodies.x[b],
                             .ra = (const double(*)[3])st->rotation[a],
                             .rb = (const double(*)[3])st->rotation[b],
-                            .va = (const double(*)[3])(st->global_vertices + s->vertex_first[a]),
-                            .vb = (const double(*)[3])(st->global_vertices + s->vertex_first[b]),
+                            .va = (const double(*)[3])(st->global_vertices + s->first[a].vertex),
+                            .vb = (const double(*)[3])(st->global_vertices + s->first[b].vertex),
                             .contact_distance = radius + radius,
                             .fade = radius,
                             .reach = poly_core_reach(sim, a, b)};

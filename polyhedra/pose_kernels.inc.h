@@ -62,7 +62,8 @@ BRC_LANES_INLINE void poly_pose_planes(const struct poly_state *st,
 
 /* All vertices and planes of all grains at each step: each serves several contacts, and memory
  * is read in order. */
-BRC_LANES_INLINE void poly_pose_cores(const struct brc_sim *sim, const struct poly_state *st)
+__attribute__((flatten)) static inline void poly_pose_cores(const struct brc_sim *sim,
+                                                            const struct poly_state *st)
 {
     const struct brc_bodies *b = &sim->bodies;
     const struct poly_shapes *s = &st->shapes;
@@ -72,8 +73,8 @@ BRC_LANES_INLINE void poly_pose_cores(const struct brc_sim *sim, const struct po
             pose.r[k] = brc_lanes_all(st->rotation[i][k / 3][k % 3]);
         for (int k = 0; k < 3; k++)
             pose.x[k] = brc_lanes_all(b->x[i][k]);
-        poly_pose_vertices(st, &pose, s->vertex_first[i], s->vertex_first[i + 1]);
-        poly_pose_planes(st, &pose, s->face_first[i], s->face_first[i + 1]);
+        poly_pose_vertices(st, &pose, s->first[i].vertex, s->first[i + 1].vertex);
+        poly_pose_planes(st, &pose, s->first[i].face, s->first[i + 1].face);
     }
 }
 

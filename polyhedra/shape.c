@@ -13,10 +13,7 @@
 
 void poly_shapes_free(struct poly_shapes *s)
 {
-    free(s->vertex_first);
-    free(s->edge_first);
-    free(s->face_first);
-    free(s->side_first);
+    free(s->first);
     free(s->vertex);
     free(s->end);
     free(s->edge);
@@ -30,76 +27,45 @@ void poly_shapes_free(struct poly_shapes *s)
 
 /* Room for one more body. Edges are counted as half of the sides, since each lies between two
  * faces; whether that is so is found when they are filled. */
-static int reserve(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid)
+static int reserve(struct brc_context *ctx, struct poly_shapes *s, const struct brc_convex *solid)
 {
     size_t n = s->n, n_sides = solid->first[solid->n_faces];
-    BRC_GROW(ctx, s->vertex_first, s->cap[0], n + 2);
-    BRC_GROW(ctx, s->edge_first, s->cap[1], n + 2);
-    BRC_GROW(ctx, s->face_first, s->cap[2], n + 2);
-    BRC_GROW(ctx, s->side_first, s->cap[3], n + 2);
+    BRC_GROW(ctx, s->first, s->cap[0], n + 2);
     if (n == 0)
-        s->vertex_first[0] = s->edge_first[0] = s->face_first[0] = s->side_first[0] = 0;
-    size_t n_vertices = s->vertex_first[n] + solid->n_vertices;
-    size_t n_edges = s->edge_first[n] + n_sides / 2;
-    BRC_GROW(ctx, s->vertex, s->cap[4], n_vertices);
-    BRC_GROW(ctx, s->end, s->cap[5], n_edges);
-    BRC_GROW(ctx, s->edge, s->cap[6], n_edges);
-    BRC_GROW(ctx, s->face, s->cap[7], s->face_first[n] + solid->n_faces);
-    BRC_GROW(ctx, s->side, s->cap[8], s->side_first[n] + n_sides);
-    BRC_GROW(ctx, s->link, s->cap[9], s->side_first[n] + n_sides);
-    BRC_GROW(ctx, s->star_first, s->cap[10], n_vertices + n + 1);
-    BRC_GROW(ctx, s->star, s->cap[11], 2 * n_edges);
+        s->first[0] = (struct poly_first){0};
+    const struct poly_first *at = &s->first[n];
+    size_t n_vertices = at->vertex + solid->n_vertices, n_edges = at->edge + n_sides / 2;
+    BRC_GROW(ctx, s->vertex, s->cap[1], n_vertices);
+    BRC_GROW(ctx, s->end, s->cap[2], n_edges);
+    BRC_GROW(ctx, s->edge, s->cap[3], n_edges);
+    BRC_GROW(ctx, s->face, s->cap[4], at->face + solid->n_faces);
+    BRC_GROW(ctx, s->side, s->cap[5], at->side + n_sides);
+    BRC_GROW(ctx, s->link, s->cap[6], at->side + n_sides);
+    BRC_GROW(ctx, s->star_first, s->cap[7], n_vertices + n + 1);
+    BRC_GROW(ctx, s->star, s->cap[8], 2 * n_edges);
     return 0;
 }
 
-/* Area vector of a loop (half the sum of cross products) about its first vertex, and the mean of
- * its vertices. About a vertex and not about the origin, so that no digits are lost where a face is
- * small beside its distance from there. */
-static void loop_area(const struct poly_solid *solid, size_t face, double area[3], double mean[3])
+/* The plane is put through the mean of the vertices. Sides follow the loop, which is
+ * counter-clockwise as seen from outside, as the outward normals of the sides want it. */
+static void fill_face(struct poly_shapes *s, const struct brc_convex *solid, size_t f)
 {
-    size_t first = solid->first[face], n = solid->first[face + 1] - first;
-    const int32_t *loop = solid->loop + first;
-    brc_set(area, 0, 0, 0);
-    brc_copy(mean, solid->vertex[loop[0]]);
-    for (size_t k = 1; k < n; k++) {
-        double a[3], b[3], c[3];
-        brc_sub(a, solid->vertex[loop[k]], solid->vertex[loop[0]]);
-        brc_sub(b, solid->vertex[loop[(k + 1) % n]], solid->vertex[loop[0]]);
-        brc_cross(c, a, b);
-        brc_axpy(area, 0.5, c);
-        brc_add(mean, mean, solid->vertex[loop[k]]);
-    }
-    brc_scale(mean, mean, 1 / (double)n);
-}
-
-/* Callers need not know in which sense a loop runs: the mean of the vertices is inside a convex
- * body, so that it tells outside from inside. Loops are stored counter-clockwise as seen from
- * outside, as the outward normals of the sides want them. */
-static void fill_face(struct poly_shapes *s, const struct poly_solid *solid, size_t f,
-                      const double middle[3])
-{
-    struct poly_face *face = s->face + s->face_first[s->n] + f;
-    struct poly_side *side = s->side + s->side_first[s->n] + solid->first[f];
-    struct poly_link *link = s->link + s->side_first[s->n] + solid->first[f];
+    struct poly_face *face = s->face + s->first[s->n].face + f;
+    struct poly_side *side = s->side + s->first[s->n].side + solid->first[f];
+    struct poly_link *link = s->link + s->first[s->n].side + solid->first[f];
     size_t first = solid->first[f], n = solid->first[f + 1] - first;
-    double area[3], mean[3], out[3];
-    loop_area(solid, f, area, mean);
-    brc_sub(out, mean, middle);
-    bool inward = brc_dot(area, out) < 0;
-    if (solid->normal != NULL)
-        brc_copy(face->n, solid->normal[f]);
-    else
-        brc_scale(face->n, area, (inward ? -1 : 1) / brc_norm(area));
+    double mean[3], along[3];
+    brc_copy(mean, solid->vertex[solid->loop[first]]);
+    for (size_t k = 1; k < n; k++)
+        brc_add(mean, mean, solid->vertex[solid->loop[first + k]]);
+    brc_scale(mean, mean, 1 / (double)n);
+    brc_copy(face->n, solid->plane[f].n);
     face->d = brc_dot(face->n, mean);
     face->first = (int32_t)first;
     face->n_sides = (int32_t)n;
     for (size_t k = 0; k < n; k++) {
-        link[k].v = solid->loop[first + (inward ? n - 1 - k : k)];
-        link[k].edge = -1;
-    }
-    for (size_t k = 0; k < n; k++) {
-        double along[3];
-        brc_sub(along, solid->vertex[link[(k + 1) % n].v], solid->vertex[link[k].v]);
+        link[k] = (struct poly_link){.v = solid->loop[first + k], .edge = -1};
+        brc_sub(along, solid->vertex[solid->loop[first + (k + 1) % n]], solid->vertex[link[k].v]);
         brc_cross(side[k].m, along, face->n);
         brc_normalise(side[k].m, side[k].m);
         side[k].off = brc_dot(side[k].m, solid->vertex[link[k].v]);
@@ -132,12 +98,12 @@ static bool find_twin(struct poly_edge *e, const struct poly_face *face, size_t 
  * the surface, a twin that has its edge already is where three faces meet: neither is the surface
  * of a body, and walks over it might not end. */
 static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
-                      const struct poly_solid *solid)
+                      const struct brc_convex *solid)
 {
-    struct poly_face *face = s->face + s->face_first[s->n];
-    struct poly_link *link = s->link + s->side_first[s->n];
-    int32_t(*end)[2] = s->end + s->edge_first[s->n];
-    struct poly_edge *edge = s->edge + s->edge_first[s->n];
+    struct poly_face *face = s->face + s->first[s->n].face;
+    struct poly_link *link = s->link + s->first[s->n].side;
+    int32_t(*end)[2] = s->end + s->first[s->n].edge;
+    struct poly_edge *edge = s->edge + s->first[s->n].edge;
     int32_t n_sides = (int32_t)solid->first[solid->n_faces], n_edges = 0;
     for (int32_t k = 0, f = 0; k < n_sides; k++) {
         f += k == face[f].first + face[f].n_sides;
@@ -160,17 +126,17 @@ static int fill_edges(struct brc_context *ctx, struct poly_shapes *s,
             BRC_FAIL(ctx, BRC_ERR_GEOMETRY, "body %zu: edge %d-%d has no length", s->n, v0, v1);
         link[k].edge = link[e.side[1]].edge = n_edges++;
     }
-    s->edge_first[s->n + 1] = s->edge_first[s->n] + (size_t)n_edges;
+    s->first[s->n + 1].edge = s->first[s->n].edge + (size_t)n_edges;
     return 0;
 }
 
 /* Edges by vertex, since a walk leaves a vertex along one of its edges. */
 static void fill_star(struct poly_shapes *s, size_t n_vertices)
 {
-    size_t n_edges = s->edge_first[s->n + 1] - s->edge_first[s->n];
-    const int32_t(*end)[2] = (const int32_t(*)[2])(s->end + s->edge_first[s->n]);
-    int32_t *first = s->star_first + s->vertex_first[s->n] + s->n;
-    int32_t *star = s->star + 2 * s->edge_first[s->n];
+    size_t n_edges = s->first[s->n + 1].edge - s->first[s->n].edge;
+    const int32_t(*end)[2] = (const int32_t(*)[2])(s->end + s->first[s->n].edge);
+    int32_t *first = s->star_first + s->first[s->n].vertex + s->n;
+    int32_t *star = s->star + 2 * s->first[s->n].edge;
     int32_t n = 0;
     for (size_t v = 0; v < n_vertices; v++) {
         first[v] = n;
@@ -181,34 +147,21 @@ static void fill_star(struct poly_shapes *s, size_t n_vertices)
     first[n_vertices] = n;
 }
 
-int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid)
+int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct brc_convex *solid)
 {
     size_t n_sides = solid->first[solid->n_faces];
-    double middle[3] = {0, 0, 0};
     BRC_TRY(reserve(ctx, s, solid));
-    double(*vertex)[3] = s->vertex + s->vertex_first[s->n];
-    for (size_t v = 0; v < solid->n_vertices; v++) {
-        brc_copy(vertex[v], solid->vertex[v]);
-        brc_axpy(middle, 1 / (double)solid->n_vertices, solid->vertex[v]);
-    }
+    memcpy(s->vertex + s->first[s->n].vertex, solid->vertex,
+           solid->n_vertices * sizeof *solid->vertex);
     for (size_t f = 0; f < solid->n_faces; f++)
-        fill_face(s, solid, f, middle);
+        fill_face(s, solid, f);
     BRC_TRY(fill_edges(ctx, s, solid));
     fill_star(s, solid->n_vertices);
-    s->vertex_first[s->n + 1] = s->vertex_first[s->n] + solid->n_vertices;
-    s->face_first[s->n + 1] = s->face_first[s->n] + solid->n_faces;
-    s->side_first[s->n + 1] = s->side_first[s->n] + n_sides;
+    s->first[s->n + 1].vertex = s->first[s->n].vertex + solid->n_vertices;
+    s->first[s->n + 1].face = s->first[s->n].face + solid->n_faces;
+    s->first[s->n + 1].side = s->first[s->n].side + n_sides;
     s->n++;
     return 0;
-}
-
-double poly_shapes_reach(const struct poly_shapes *s, size_t body)
-{
-    struct poly_core c = poly_core_of(s, body);
-    double reach = 0;
-    for (int32_t v = 0; v < c.n_vertices; v++)
-        reach = fmax(reach, brc_norm(c.vertex[v]));
-    return reach;
 }
 
 /* Unit quaternion of a rotation matrix, by its largest component. The largest one is 1/2 at least,

@@ -7,7 +7,7 @@
 #ifndef POLY_SHAPE_H
 #define POLY_SHAPE_H
 
-#include "common/base/error.h"
+#include "common/geometry/convex.h"
 
 /* What every step reads is kept apart from what only lists and walks read: it must stay in cache.
  */
@@ -57,37 +57,26 @@ struct poly_core {
  * batch.h). */
 struct poly_shapes {
     size_t n;
-    size_t *vertex_first, *edge_first, *face_first, *side_first; /* [n + 1] */
+    struct poly_first {
+        size_t vertex, edge, face, side;
+    } * first; /* [n + 1] where the features of a body begin */
     double (*vertex)[3];
     int32_t (*end)[2];
     struct poly_edge *edge;
     struct poly_face *face;
     struct poly_side *side;
     struct poly_link *link;
-    int32_t *star_first; /* vertices of a body plus one, from vertex_first + body */
-    int32_t *star;       /* from 2 edge_first */
-    size_t cap[12];      /* of these arrays, in their order */
-};
-
-/* A polyhedron to add: faces as loops of vertex numbers in either sense. Erosion knows its normals
- * from the planes that it has moved. From the vertices of a small face they would have the
- * round-off of its edges over their lengths. */
-struct poly_solid {
-    size_t n_vertices;
-    const double (*vertex)[3]; /* body frame */
-    size_t n_faces;
-    const size_t *first; /* [n_faces + 1] */
-    const int32_t *loop;
-    const double (*normal)[3]; /* outward unit normals; NULL: from the vertices */
+    int32_t *star_first; /* vertices of a body plus one, from first.vertex + body */
+    int32_t *star;       /* from 2 first.edge */
+    size_t cap[9];       /* of these arrays, in their order */
 };
 
 void poly_shapes_free(struct poly_shapes *s);
-/* Adds one core; a solid that is not a closed convex polyhedron is an error that names the body.
- * Nothing of it is kept then, as the counts have not been raised. */
-int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct poly_solid *solid);
-
-/* Largest distance of a vertex from the body's centre. */
-double poly_shapes_reach(const struct poly_shapes *s, size_t body);
+/* Adds one core, given in the body frame. Its normals are those of its planes: erosion knows them
+ * from the planes that it has moved, where the vertices of a small face would give them the
+ * round-off of its edges over their lengths. A solid that is not a closed convex polyhedron is an
+ * error that names the body. Nothing of it is kept then, as the counts have not been raised. */
+int poly_shapes_add(struct brc_context *ctx, struct poly_shapes *s, const struct brc_convex *solid);
 
 /* Principal moments, and the orientation (principal axes to space) of an inertia tensor. Moments
  * ascend, and the axes are right-handed. Where two moments are equal any axes in their plane do. */
@@ -96,18 +85,18 @@ int poly_principal(struct brc_context *ctx, const double inertia[3][3], double m
 
 static inline struct poly_core poly_core_of(const struct poly_shapes *s, size_t body)
 {
-    size_t v = s->vertex_first[body], e = s->edge_first[body], f = s->face_first[body];
-    struct poly_core c = {(const double(*)[3])(s->vertex + v),
-                          (const int32_t(*)[2])(s->end + e),
-                          s->edge + e,
-                          s->face + f,
-                          s->side + s->side_first[body],
-                          s->link + s->side_first[body],
-                          s->star_first + v + body,
-                          s->star + 2 * e,
-                          (int32_t)(s->vertex_first[body + 1] - v),
-                          (int32_t)(s->edge_first[body + 1] - e),
-                          (int32_t)(s->face_first[body + 1] - f)};
+    const struct poly_first *at = &s->first[body], *end = at + 1;
+    struct poly_core c = {(const double(*)[3])(s->vertex + at->vertex),
+                          (const int32_t(*)[2])(s->end + at->edge),
+                          s->edge + at->edge,
+                          s->face + at->face,
+                          s->side + at->side,
+                          s->link + at->side,
+                          s->star_first + at->vertex + body,
+                          s->star + 2 * at->edge,
+                          (int32_t)(end->vertex - at->vertex),
+                          (int32_t)(end->edge - at->edge),
+                          (int32_t)(end->face - at->face)};
     return c;
 }
 

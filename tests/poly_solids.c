@@ -1,18 +1,45 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_solids.h"
 
-#include "common/geometry/convex.h"
 #include "common/geometry/vec.h"
 
-static int add_convex(struct brc_context *ctx, struct poly_shapes *shapes,
-                      const struct brc_convex *c)
+/* The normal of a loop is along half the sum of cross products about its first vertex, and the mean
+ * of all vertices is inside a convex body. */
+void solid_planes(struct brc_convex *c, struct brc_plane *plane)
 {
-    struct poly_solid solid = {.n_vertices = c->n_vertices,
-                               .vertex = (const double(*)[3])c->vertex,
-                               .n_faces = c->n_faces,
-                               .first = c->first,
-                               .loop = c->loop};
-    return poly_shapes_add(ctx, shapes, &solid);
+    double middle[3] = {0, 0, 0};
+    c->plane = plane;
+    for (size_t v = 0; v < c->n_vertices; v++)
+        brc_axpy(middle, 1 / (double)c->n_vertices, c->vertex[v]);
+    for (size_t f = 0; f < c->n_faces; f++) {
+        size_t n = c->first[f + 1] - c->first[f];
+        int32_t *loop = c->loop + c->first[f];
+        const double *corner = c->vertex[loop[0]];
+        double area[3] = {0, 0, 0}, a[3], b[3], out[3];
+        for (size_t k = 1; k + 1 < n; k++) {
+            brc_sub(a, c->vertex[loop[k]], corner);
+            brc_sub(b, c->vertex[loop[k + 1]], corner);
+            brc_cross(out, a, b);
+            brc_add(area, area, out);
+        }
+        brc_sub(out, corner, middle);
+        bool is_inward = brc_dot(area, out) < 0;
+        brc_scale(plane[f].n, area, (is_inward ? -1 : 1) / brc_norm(area));
+        for (size_t k = 0; is_inward && k < n / 2; k++) {
+            int32_t v = loop[k];
+            loop[k] = loop[n - 1 - k];
+            loop[n - 1 - k] = v;
+        }
+    }
+}
+
+double solid_reach(const struct poly_shapes *shapes, size_t body)
+{
+    struct poly_core c = poly_core_of(shapes, body);
+    double reach = 0;
+    for (int32_t v = 0; v < c.n_vertices; v++)
+        reach = fmax(reach, brc_norm(c.vertex[v]));
+    return reach;
 }
 
 int solid_box(struct brc_context *ctx, struct poly_shapes *shapes, const double half[3])
@@ -22,7 +49,7 @@ int solid_box(struct brc_context *ctx, struct poly_shapes *shapes, const double 
     brc_scale(low, half, -1);
     int code = brc_convex_box(ctx, &c, low, half);
     if (code == 0)
-        code = add_convex(ctx, shapes, &c);
+        code = poly_shapes_add(ctx, shapes, &c);
     brc_convex_free(&c);
     return code;
 }
@@ -61,7 +88,7 @@ int solid_random(struct brc_context *ctx, struct poly_shapes *shapes, unsigned *
     }
     int code = brc_convex_from_planes(ctx, &c, plane, N, centre, 3 * size);
     if (code == 0)
-        code = add_convex(ctx, shapes, &c);
+        code = poly_shapes_add(ctx, shapes, &c);
     brc_convex_free(&c);
     return code;
 }
@@ -90,6 +117,5 @@ struct poly_pair solid_pair(const struct poly_shapes *shapes, size_t a, const st
                               .vb = (const double(*)[3])pb->v,
                               .contact_distance = 2 * radius,
                               .fade = radius,
-                              .reach =
-                                  fmin(poly_shapes_reach(shapes, a), poly_shapes_reach(shapes, b))};
+                              .reach = fmin(solid_reach(shapes, a), solid_reach(shapes, b))};
 }

@@ -7,6 +7,11 @@
 
 #include <stdlib.h>
 
+/* Planes of a solid from its vertices, for solids of files; its loops, which may run in either
+ * sense, become counter-clockwise as seen from outside. plane: room for all faces. */
+void solid_planes(struct brc_convex *c, struct brc_plane *plane);
+/* Largest distance of a vertex from the body's origin. */
+double solid_reach(const struct poly_shapes *shapes, size_t body);
 /* A box with the given half edges, as core number shapes->n. */
 int solid_box(struct brc_context *ctx, struct poly_shapes *shapes, const double half[3]);
 /* The eroded random cell cut from a ball by planes at distances in [0.7, 1] x size. */

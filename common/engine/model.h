@@ -34,7 +34,7 @@ struct brc_model {
      * the boundary facets. Called once, after shape. */
     int (*bond)(struct brc_sim *sim, void *state);
     /* Candidates have changed: open rows that may interact, close those that are apart, keep the
-     * state of the rest (brc_contacts_set). Bonded rows stay whatever the candidates say. */
+     * state of the rest (brc_contacts_merge). Bonded rows stay whatever the candidates say. */
     int (*pairs)(struct brc_sim *sim, void *state, const struct brc_neighbours *grains,
                  const struct brc_neighbours *platens);
     /* Hot. All rows of sim->pairs for one step: writes f, ta, tb, k (and k_version), updates point

@@ -100,13 +100,15 @@ static struct count count_contacts(double scale, double widen)
     struct poly_shapes shapes = {0};
     struct poly_list list = {0};
     struct count c = {0};
-    struct poly_solid solid = {.n_vertices = p->n_vertices,
-                               .vertex = (const double(*)[3])p->vertex,
+    struct brc_convex solid = {.n_vertices = p->n_vertices,
+                               .vertex = p->vertex,
                                .n_faces = p->n_faces,
                                .first = p->first,
                                .loop = p->loop};
+    struct brc_plane plane[MAX_FACES];
+    solid_planes(&solid, plane);
     CHECK_OK(&ctx, poly_shapes_add(&ctx, &shapes, &solid));
-    double near = 2 * (poly_shapes_reach(&shapes, 0) + p->radius);
+    double near = 2 * (solid_reach(&shapes, 0) + p->radius);
     for (size_t i = 0; i < N_BODIES; i++)
         solid_place(&p->pose[i], &shapes, 0);
     for (size_t i = 0; i < N_BODIES; i++)

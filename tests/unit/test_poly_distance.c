@@ -433,8 +433,8 @@ static void test_lists_are_exact(void **state)
         struct poly_pair p = solid_pair(&shapes, a, &pa, b, &pb, radius);
         CHECK_OK(&ctx, poly_list_features(&ctx, &near, &p, rule, skin, &allowance));
         assert_true(allowance >= skin);
-        double path = move_at_random(&pb, solid_uniform(&seed) * allowance,
-                                     poly_shapes_reach(&shapes, b), &seed);
+        double path =
+            move_at_random(&pb, solid_uniform(&seed) * allowance, solid_reach(&shapes, b), &seed);
         solid_place(&pb, &shapes, b);
         p = solid_pair(&shapes, a, &pa, b, &pb, radius);
         CHECK_OK(&ctx, poly_list_features(&ctx, &all, &p, rule, 5, &unused));

@@ -31,7 +31,7 @@ static void test_box(void **state)
     for (int32_t e = 0; e < c.n_edges; e++)
         length += edge_length(&c, e);
     CHECK_NEAR(length, 4 * (2 + 4 + 6), 1e-12, 0);
-    CHECK_NEAR(poly_shapes_reach(&s, 0), sqrt(14), 1e-14, 0);
+    CHECK_NEAR(solid_reach(&s, 0), sqrt(14), 1e-14, 0);
     poly_shapes_free(&s);
 }
 
@@ -84,11 +84,13 @@ static void test_open_solid_is_an_error(void **state)
     (void)state;
     struct brc_context ctx = BRC_CONTEXT_INIT;
     struct poly_shapes s = {0};
-    const double v[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const size_t first[] = {0, 3, 6, 9};
-    const int32_t loop[] = {0, 2, 1, 0, 1, 3, 0, 3, 2};
-    struct poly_solid open = {
+    double v[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    size_t first[] = {0, 3, 6, 9};
+    int32_t loop[] = {0, 2, 1, 0, 1, 3, 0, 3, 2};
+    struct brc_convex open = {
         .n_vertices = 4, .vertex = v, .n_faces = 3, .first = first, .loop = loop};
+    struct brc_plane plane[3];
+    solid_planes(&open, plane);
     CHECK_FAILS(&ctx, poly_shapes_add(&ctx, &s, &open), BRC_ERR_GEOMETRY, "not a closed");
     poly_shapes_free(&s);
 }
