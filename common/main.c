@@ -15,6 +15,7 @@
 #include "common/runs/export.h"
 #include "common/output/info.h"
 #include "common/runs/run.h"
+#include "common/rigs/readings.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -188,6 +189,12 @@ static int act_models(struct brc_context *ctx, const struct options *o)
     return 0;
 }
 
+static void print_quantities(const struct brc_quantity *q, int n)
+{
+    for (int i = 0; i < n; i++)
+        printf("  %-20s %-3s %s\n", q[i].name, q[i].unit, q[i].meaning);
+}
+
 /* As the tests declare themselves: one that is added stands here, with its keys and what it
  * measures, without a line of this file. */
 static int act_tests(struct brc_context *ctx, const struct options *o)
@@ -196,10 +203,10 @@ static int act_tests(struct brc_context *ctx, const struct options *o)
     for (int i = 0; i < brc_rigs_count(); i++) {
         const struct brc_rig_type *rig = brc_rigs_at(i);
         printf("%s: %s\n  keys: %s\n", rig->name, rig->meaning, rig->keys);
-        for (int k = 0; k < rig->n_quantities; k++)
-            printf("  %-15s %-3s %s\n", rig->quantities[k].name, rig->quantities[k].unit,
-                   rig->quantities[k].meaning);
+        print_quantities(rig->quantities, rig->n_quantities);
     }
+    printf("every test:\n");
+    print_quantities(brc_readings_quantities, BRC_N_READINGS);
     return 0;
 }
 

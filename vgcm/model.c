@@ -226,6 +226,14 @@ static void platens(struct brc_sim *sim, void *state)
     own->loops->platens(sim, &own->law, own->flags);
 }
 
+/* Without the friction that a pressed point has beside its cohesion, as that stays when it breaks.
+ */
+static double strength(const struct brc_sim *sim, int mode)
+{
+    const struct vgcm_params *p = sim->params;
+    return mode == BRC_MODE_TENSION ? p->sigma_t : p->tau;
+}
+
 /* One line for the header of a run: what a reader wants who compares it with the print. */
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
 {
@@ -280,4 +288,5 @@ const struct brc_model brc_model_vgcm = {
     .free = free,
     .select = select_loops,
     .strength_left = vgcm_strength_left,
+    .strength = strength,
     .describe = describe};

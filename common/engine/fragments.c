@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Connected parts of the specimen by union-find over the bonds that hold: nearly linear in the
- * bonds, without the lists of neighbours that a search through the graph would need. The lowest
- * grain is the root of its set, whatever the order of the bonds, so that numbers are the same in
- * each run. Called by runs and frames, never by a step. */
+ * bonds, without the lists of neighbours that a search through the graph would need. Called by runs
+ * and frames, never by a step. */
 #include "common/engine/fragments.h"
 
+#include "common/base/disjoint.h"
 #include "common/engine/sim.h"
 
 #include <stdlib.h>
@@ -15,23 +15,6 @@ struct entry {
     double volume;
     int32_t root, size;
 };
-
-/* Lowest grain of the set; paths are halved on the way. */
-static int32_t root_of(int32_t *parent, int32_t i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-static void join(int32_t *parent, int32_t a, int32_t b)
-{
-    int32_t low = root_of(parent, a), high = root_of(parent, b);
-    if (low < high)
-        parent[high] = low;
-    else
-        parent[low] = high;
-}
 
 /* By grain where volumes are equal: else equal grains of a grid would be numbered by qsort's whim.
  */
@@ -49,7 +32,7 @@ static void number(struct brc_fragments *out, const double *volume, struct entry
     int32_t *parent = out->of;
     size_t n = 0;
     for (size_t i = 0; i < out->n_grains; i++)
-        parent[i] = root_of(parent, (int32_t)i);
+        parent[i] = brc_disjoint_root(parent, (int32_t)i);
     /* a root comes before its grains: size counts them, root finds the entry */
     for (size_t i = 0; i < out->n_grains; i++) {
         if (parent[i] == (int32_t)i) {
@@ -86,7 +69,7 @@ int brc_fragments_connect(struct brc_context *ctx, size_t n_grains, const double
         out->of[i] = (int32_t)i;
     for (size_t i = 0; code == 0 && i < pairs->n; i++)
         if (holds[i])
-            join(out->of, pairs->a[i], pairs->b[i]);
+            brc_disjoint_join(out->of, pairs->a[i], pairs->b[i]);
     if (code == 0)
         number(out, volume, entry);
     free(entry);

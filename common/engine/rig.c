@@ -4,8 +4,6 @@
  * tables like all others, so saving, hashing and CSV files need no line for a new test. */
 #include "common/engine/rig.h"
 
-#include "common/engine/events.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,10 +30,9 @@ int brc_rig_check(struct brc_context *ctx, const struct brc_test *test)
     const struct brc_rig_type *t = test->type;
     if (!t->place || !t->drive || !t->measure || !t->results)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "test %s lacks a required operation", t->name);
-    if (t->n_platens > BRC_MAX_PLATENS || t->n_quantities > BRC_MAX_RESULTS - BRC_N_MODES)
+    if (t->n_platens > BRC_MAX_PLATENS || t->n_quantities > BRC_MAX_QUANTITIES)
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "test %s: %d platens and %d quantities, %d and %d at most",
-                 t->name, t->n_platens, t->n_quantities, BRC_MAX_PLATENS,
-                 BRC_MAX_RESULTS - BRC_N_MODES);
+                 t->name, t->n_platens, t->n_quantities, BRC_MAX_PLATENS, BRC_MAX_QUANTITIES);
     return t->check ? t->check(ctx, test->params, test->own) : 0;
 }
 

@@ -83,8 +83,10 @@ struct brc_result {
     double value;
     const char *unit;
     const char *note;
+    bool is_detail; /* for files and programs, not for the table on the screen */
 };
-enum { BRC_MAX_RESULTS = 24 };
+/* What a test declares, and with what is read off every test. */
+enum { BRC_MAX_QUANTITIES = 24, BRC_MAX_RESULTS = 48 };
 
 /* Sides of a core that is loaded along its axis. Those of a disc, which a Brazilian test needs
  * under its platens (specimen.c), would make polyhedra a third stiffer: a side cuts more corners

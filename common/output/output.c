@@ -92,6 +92,21 @@ static void json_frames(FILE *out, const struct brc_summary *s)
     fputs("\n  },\n", out);
 }
 
+/* Where the energy went: null without the ledger, whose zeros would look like values. */
+static void json_energy(FILE *out, const struct brc_summary *s)
+{
+    bool is_on = s->energy_check != BRC_ENERGY_OFF;
+    const char *comma = "";
+    fputs("  \"energy\": {", out);
+#define TERM(name, sign, meaning)                   \
+    fprintf(out, "%s\n    \"" #name "\": ", comma); \
+    json_number(out, is_on ? s->ledger.name : NAN); \
+    comma = ",";
+    BRC_LEDGER_TERMS(TERM)
+#undef TERM
+    fputs("\n  },\n", out);
+}
+
 /* Keys in reading order: what ran, how it ended, how large it was, what it took, whether it can be
  * trusted, what it gave. What of them depends on the machine is only the times. */
 int brc_output_summary(struct brc_context *ctx, const char *dir, const char *name,
@@ -123,6 +138,7 @@ int brc_output_summary(struct brc_context *ctx, const char *dir, const char *nam
     json_number_entry(out, "energy_residual", s->energy_residual);
     json_number_entry(out, "energy_drift", s->energy_drift);
     json_text_entry(out, "energy_check", checks[s->energy_check]);
+    json_energy(out, s);
     json_number_entry(out, "unbalanced_max", s->unbalanced_max);
     fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
     json_results(out, s);

@@ -61,6 +61,7 @@ struct brc_summary {
     double cpu_s, wall_s;       /* of the step loop, all parts of a resumed run together */
     double ns_per_contact_step; /* cpu_s over steps and n_contacts_mean */
     double energy_residual, energy_drift, unbalanced_max;
+    struct brc_ledger ledger; /* at the end; zeros where energy_check is off */
     uint64_t state_hash;
     enum brc_energy_check energy_check;
     int n_results;

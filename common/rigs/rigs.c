@@ -5,6 +5,7 @@
 
 #include "common/engine/sim.h"
 #include "common/rigs/loading.h"
+#include "common/rigs/readings.h"
 
 #include "rig_list.h"
 #include <string.h>
@@ -26,6 +27,8 @@ static const struct brc_rig_type *const registered[] = {
 
 _Static_assert(sizeof registered / sizeof registered[0] <= BRC_MAX_RIGS,
                "BRC_MAX_RIGS is too small");
+_Static_assert(BRC_MAX_QUANTITIES + BRC_N_READINGS <= BRC_MAX_RESULTS,
+               "BRC_MAX_RESULTS is too small");
 
 int brc_rigs_count(void)
 {
@@ -66,19 +69,26 @@ bool brc_rigs_done(const struct brc_sim *sim)
     return type->is_done ? type->is_done(sim) : brc_loading_is_done(sim);
 }
 
-/* Broken contacts are counted for every test, whatever it measures. */
+static struct brc_result result(const struct brc_quantity *q, const struct brc_measured *m)
+{
+    return (struct brc_result){
+        .name = q->name, .value = m->value, .unit = q->unit, .note = m->note};
+}
+
+/* What a test declares, then what is read off every test. Of the latter the screen shows the
+ * numbers of breaks alone. */
 int brc_rigs_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS])
 {
-    static const char *const broken[BRC_N_MODES] = {"broken_tension", "broken_shear",
-                                                    "broken_torsion"};
     const struct brc_rig_type *type = sim->rig.type;
-    struct brc_measured measured[BRC_MAX_RESULTS];
+    struct brc_measured measured[BRC_MAX_QUANTITIES], readings[BRC_N_READINGS];
     int n = 0;
     type->results(sim, measured);
     for (; n < type->n_quantities; n++)
-        out[n] = (struct brc_result){type->quantities[n].name, measured[n].value,
-                                     type->quantities[n].unit, measured[n].note};
-    for (int m = 0; m < BRC_N_MODES; m++)
-        out[n++] = (struct brc_result){broken[m], (double)sim->events.count[m], "1", NULL};
+        out[n] = result(&type->quantities[n], &measured[n]);
+    brc_readings(sim, readings);
+    for (int i = 0; i < BRC_N_READINGS; i++, n++) {
+        out[n] = result(&brc_readings_quantities[i], &readings[i]);
+        out[n].is_detail = i >= BRC_N_MODES;
+    }
     return n;
 }

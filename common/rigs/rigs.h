@@ -22,8 +22,8 @@ bool brc_rigs_uses(const struct brc_rig_type *rig, const char *key);
 
 /* The test has reached its end. */
 bool brc_rigs_done(const struct brc_sim *sim);
-/* The values measured so far; returns how many: those that the test declares, and the numbers of
- * broken contacts by mode. What was not measured has a note: strength and all that hangs on the
+/* The values measured so far; returns how many: those that the test declares, and those of
+ * readings.h. What was not measured has a note: strength and all that hangs on the
  * peak before the load has fallen from it, moduli without a gauge or without two rows. A value that
  * is not finite and has no note is the result of a computation that failed. */
 int brc_rigs_results(const struct brc_sim *sim, struct brc_result out[BRC_MAX_RESULTS]);

@@ -18,6 +18,8 @@ struct brc_shown brc_compare_unit(const char *name, const char *unit, double lar
         return largest >= 1e9 ? (struct brc_shown){1e-9, "GPa"} : (struct brc_shown){1e-6, "MPa"};
     if (strcmp(unit, "N") == 0)
         return (struct brc_shown){1e-3, "kN"};
+    if (strcmp(unit, "rad") == 0)
+        return (struct brc_shown){180 / BRC_PI, "deg"};
     if (strncmp(name, "strain", 6) == 0)
         return (struct brc_shown){100, "%"};
     return (struct brc_shown){1, strcmp(unit, "1") == 0 ? "" : unit};
@@ -139,14 +141,15 @@ static void put_notes(FILE *out, const struct brc_summary *s)
 {
     for (int i = 0; i < s->n_results; i++) {
         const char *note = s->results[i].note;
-        bool is_told = !note;
+        bool is_told = !note || s->results[i].is_detail;
         for (int k = 0; k < i && !is_told; k++)
             is_told = s->results[k].note && strcmp(s->results[k].note, note) == 0;
         if (is_told)
             continue;
         fprintf(out, "%s: %s", s->model, s->results[i].name);
         for (int k = i + 1; k < s->n_results; k++)
-            if (s->results[k].note && strcmp(s->results[k].note, note) == 0)
+            if (!s->results[k].is_detail && s->results[k].note &&
+                strcmp(s->results[k].note, note) == 0)
                 fprintf(out, ", %s", s->results[k].name);
         fprintf(out, ": %s\n", note);
     }
@@ -166,7 +169,8 @@ void brc_compare_table(FILE *out, const struct brc_summary *const *summary, int 
     fputc('\n', out);
     brc_compare_rule(out, width);
     for (int i = 0; i < summary[0]->n_results; i++)
-        put_result(out, summary, n, &summary[0]->results[i]);
+        if (!summary[0]->results[i].is_detail)
+            put_result(out, summary, n, &summary[0]->results[i]);
     brc_compare_rule(out, width);
     put_costs(out, summary, n);
     brc_compare_rule(out, width);

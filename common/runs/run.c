@@ -6,8 +6,11 @@
 
 #include "common/base/folders.h"
 #include "common/base/signals.h"
+#include "common/rigs/acoustic.h"
+#include "common/rigs/crack_fabric.h"
 #include "common/rigs/curve.h"
 #include "common/rigs/loading.h"
+#include "common/rigs/sieve.h"
 #include "common/engine/blowup.h"
 #include "common/engine/fragments.h"
 #include "common/output/frames.h"
@@ -315,6 +318,7 @@ static int measure(struct run *r, struct brc_summary *s)
         .energy_check = sim->run.ledger ? brc_ledger_check(&sim->ledger, stored,
                                                            t.stiffness * stretch * stretch)
                                         : BRC_ENERGY_OFF,
+        .ledger = sim->ledger,
         .unbalanced_max = brc_curve_unbalanced_max(sim),
         .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);
@@ -325,6 +329,7 @@ static int measure(struct run *r, struct brc_summary *s)
     s->n_contacts_mean = r->counts.contact_steps / (double)sim->step;
     s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
     s->n_results = brc_rigs_results(sim, s->results);
+    BRC_TRY(r->ctx->code); /* memory for readings */
     BRC_TRY(check_results(r, s));
     memcpy(s->frame, r->frames.last, sizeof s->frame);
     int code = brc_fragments_find(r->ctx, sim, &fragments);
@@ -340,6 +345,36 @@ static int write_tables(struct run *r)
     BRC_TRY(
         brc_output_csv(r->ctx, dir, "curve.csv", &r->sim.rig.curve.table, &r->sim.rig.curve.own));
     return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table, NULL);
+}
+
+static int write_events(struct run *r)
+{
+    struct brc_acoustic a;
+    int code = brc_acoustic_find(&r->sim, &a);
+    if (code == 0)
+        code = brc_output_csv(r->ctx, r->options->dir, "events_clustered.csv", &a.table, NULL);
+    brc_acoustic_free(&a);
+    return code;
+}
+
+static int write_angles(struct run *r)
+{
+    struct brc_crack_angles a;
+    int code = brc_crack_angles_measure(r->ctx, &r->sim.events, r->sim.rig.axis, &a);
+    if (code == 0)
+        code = brc_output_csv(r->ctx, r->options->dir, "crack_angles.csv", &a.table, NULL);
+    brc_crack_angles_free(&a);
+    return code;
+}
+
+static int write_fragments(struct run *r)
+{
+    struct brc_sieve s;
+    int code = brc_sieve_make(&r->sim, &s);
+    if (code == 0)
+        code = brc_output_csv(r->ctx, r->options->dir, "fragments.csv", &s.table, NULL);
+    brc_sieve_free(&s);
+    return code;
 }
 
 /* The data of curves and cracks are written without plots, too: the folder can be drawn later, and
@@ -367,6 +402,9 @@ static int write_results(struct run *r, struct brc_summary *out)
     char energy[512];
     BRC_TRY(measure(r, out));
     BRC_TRY(write_tables(r));
+    BRC_TRY(write_events(r));
+    BRC_TRY(write_angles(r));
+    BRC_TRY(write_fragments(r));
     BRC_TRY(brc_output_summary(r->ctx, r->options->dir, "summary.json", out));
     for (int i = 0; i < out->n_results; i++)
         if (out->results[i].note)

@@ -3,6 +3,7 @@
  * one with state and columns of its own. */
 #include "common/output/io_h5.h"
 #include "common/output/output.h"
+#include "common/rigs/readings.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>
@@ -191,13 +192,18 @@ static void check_results(struct fixture *f)
     struct brc_result result[BRC_MAX_RESULTS];
     fixture_steps(f, 20);
     int n = brc_rigs_results(&f->sim, result);
-    assert_int_equal(n, rig->n_quantities + BRC_N_MODES);
+    assert_int_equal(n, rig->n_quantities + BRC_N_READINGS);
     assert_true(n <= BRC_MAX_RESULTS);
     for (int i = 0; i < rig->n_quantities; i++) {
         assert_string_equal(result[i].name, rig->quantities[i].name);
         assert_string_equal(result[i].unit, rig->quantities[i].unit);
         assert_true(strlen(rig->quantities[i].meaning) > 0);
+    }
+    for (int i = 0; i < n; i++)
         assert_true(isfinite(result[i].value) || result[i].note);
+    for (int i = 0; i < BRC_N_READINGS; i++) {
+        assert_string_equal(result[rig->n_quantities + i].name, brc_readings_quantities[i].name);
+        assert_true(strlen(brc_readings_quantities[i].meaning) > 0);
     }
     for (const char *at = rig->keys; *at;) { /* keys that are there */
         char key[64];
@@ -268,8 +274,9 @@ static void incomplete_tables_are_refused(void **state)
     CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL,
                 "test null lacks a required operation");
     rig = brc_rig_null;
-    rig.n_quantities = BRC_MAX_RESULTS;
-    CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL, "24 quantities");
+    rig.n_quantities = BRC_MAX_QUANTITIES + 1;
+    CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL,
+                "25 quantities");
 }
 
 int main(void)

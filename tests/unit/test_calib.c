@@ -374,7 +374,8 @@ static void fake_result(struct brc_summary *out, const struct fake *f, const cha
 {
     if (f->lost && strcmp(f->lost, name) == 0)
         return;
-    out->results[out->n_results++] = (struct brc_result){name, value, unit, NULL};
+    out->results[out->n_results++] =
+        (struct brc_result){.name = name, .value = value, .unit = unit};
 }
 
 static int fake_run(struct brc_context *c, void *user, const struct calib_trial *trial,

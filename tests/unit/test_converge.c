@@ -105,7 +105,7 @@ static void put(struct brc_converge_model *m, enum brc_converge_role role, const
 static void make_study(struct brc_converge_study *study, struct brc_converge_setting *settings)
 {
     struct brc_converge_model *m = &study->model[0];
-    study->results[1] = (struct brc_result){"strength", 0, "Pa", NULL};
+    study->results[1] = (struct brc_result){.name = "strength", .value = 0, .unit = "Pa"};
     study->n_results = 2;
     study->observable = 1;
     study->n_models = 1;

@@ -106,7 +106,8 @@ static struct brc_summary sample(void)
         .energy_residual = HUGE_VAL,
         .state_hash = UINT64_C(0x00ab00000000000f),
         .n_results = 2,
-        .results = {{"E", 48.8e9, "Pa", NULL}, {"nu", NAN, "1", "no \"gauge\""}}};
+        .results = {{.name = "E", .value = 48.8e9, .unit = "Pa"},
+                    {.name = "nu", .value = NAN, .unit = "1", .note = "no \"gauge\""}}};
     return s;
 }
 
@@ -129,6 +130,7 @@ static void test_summary_is_json(void **state)
     assert_non_null(strstr(text, "\"cpu_s\": 0.10000000000000001,"));
     assert_non_null(strstr(text, "\"ns_per_contact_step\": null"));
     assert_non_null(strstr(text, "\"energy_residual\": null"));
+    assert_non_null(strstr(text, "\"energy\": {\n    \"kinetic\": null,")); /* no ledger */
     assert_non_null(strstr(text, "\"E\": {\"value\": 48800000000, \"unit\": \"Pa\"}"));
     assert_non_null(
         strstr(text, "\"nu\": {\"value\": null, \"unit\": \"1\", \"note\": \"no \\\"gauge\\\"\"}"));
@@ -144,10 +146,13 @@ static void test_empty_results(void **state)
     struct brc_summary s = sample();
     char path[64];
     s.n_results = 0;
+    s.energy_check = BRC_ENERGY_GOOD;
+    s.ledger.damage = 0.25;
     make_path(path, "empty.json");
     CHECK_OK(&ctx, brc_output_summary(&ctx, NULL, path, &s));
     char *text = read_all(path);
     assert_non_null(json_value(text));
+    assert_non_null(strstr(text, "\"damage\": 0.25,"));
     free(text);
     unlink(path);
 }
@@ -208,7 +213,7 @@ static void test_table(void **state)
     b.is_finished = false;
     strcpy(b.ended_by, "run.max_steps");
     b.results[0].value = 0.5e9;
-    b.results[1] = (struct brc_result){"strength", 12.34e6, "Pa", NULL};
+    b.results[1] = (struct brc_result){.name = "strength", .value = 12.34e6, .unit = "Pa"};
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
     brc_compare_table(out, both, 2);
@@ -219,6 +224,29 @@ static void test_table(void **state)
     assert_non_null(strstr(text, "nu                                       -               -\n"));
     assert_non_null(strstr(text, "polyhedra did not reach the end of the test: ended by "
                                  "run.max_steps\n"));
+    assert_non_null(strstr(text, "\nvgcm: nu: no \"gauge\"\n"));
+    free(text);
+}
+
+/* Details are for files: neither they nor why there are none are on the screen. */
+static void test_details_are_not_in_the_table(void **state)
+{
+    (void)state;
+    struct brc_summary s = sample();
+    const struct brc_summary *one = &s;
+    char *text = NULL;
+    size_t size = 0;
+    s.n_results = 4;
+    s.results[2] =
+        (struct brc_result){.name = "b_value", .value = 1.5, .unit = "1", .is_detail = 1};
+    s.results[3] = (struct brc_result){
+        .name = "n_events", .value = NAN, .unit = "1", .note = "no \"gauge\"", .is_detail = true};
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    brc_compare_table(out, &one, 1);
+    fclose(out);
+    assert_null(strstr(text, "b value"));
+    assert_null(strstr(text, "n_events"));
     assert_non_null(strstr(text, "\nvgcm: nu: no \"gauge\"\n"));
     free(text);
 }
@@ -245,7 +273,7 @@ static void test_end_of_table(void **state)
 {
     (void)state;
     struct brc_summary s = sample();
-    s.results[1] = (struct brc_result){"strength", 12.34e6, "Pa", NULL};
+    s.results[1] = (struct brc_result){.name = "strength", .value = 12.34e6, .unit = "Pa"};
     char *text = end_of_table(&s);
     assert_null(strstr(text, "ended by"));
     free(text);
@@ -254,8 +282,10 @@ static void test_end_of_table(void **state)
     assert_string_equal(text, "vgcm: ended by test.strain_max, past its peak, before the load had "
                               "fallen to test.stop_drop\n");
     free(text);
-    s.results[0] = (struct brc_result){"force_peak", NAN, "N", "no peak"};
-    s.results[1] = (struct brc_result){"strength", NAN, "Pa", "no peak"};
+    s.results[0] =
+        (struct brc_result){.name = "force_peak", .value = NAN, .unit = "N", .note = "no peak"};
+    s.results[1] =
+        (struct brc_result){.name = "strength", .value = NAN, .unit = "Pa", .note = "no peak"};
     text = end_of_table(&s);
     assert_string_equal(text, "vgcm: force_peak, strength: no peak\n");
     free(text);
@@ -266,7 +296,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_summary_is_json), cmocka_unit_test(test_empty_results),
         cmocka_unit_test(test_unwritable),      cmocka_unit_test(test_csv),
-        cmocka_unit_test(test_table),           cmocka_unit_test(test_end_of_table),
+        cmocka_unit_test(test_table),           cmocka_unit_test(test_details_are_not_in_the_table),
+        cmocka_unit_test(test_end_of_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All of it is made when results are asked for, from the log of cracks, the curve and the bonds
+ * that hold: a step pays nothing, and a resumed run measures the same. Called by rigs.c alone. */
+#include "common/rigs/readings.h"
+
+#include "common/engine/sim.h"
+#include "common/rigs/acoustic.h"
+#include "common/rigs/b_value.h"
+#include "common/rigs/crack_fabric.h"
+#include "common/rigs/curve.h"
+#include "common/rigs/sieve.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+const struct brc_quantity brc_readings_quantities[BRC_N_READINGS] = {
+    {"broken_tension", "1", "breaks in tension: bonds, or local points"},
+    {"broken_shear", "1", "breaks in shear"},
+    {"broken_torsion", "1", "breaks in torsion"},
+    {"work_at_peak", "J", "work of the platens up to the peak"},
+    {"break_energy_at_peak", "J", "of it dissipated by breaks"},
+    {"crack_angle", "rad", "mean angle between cracks and the load"},
+    {"crack_alignment", "1", "1: all cracks along the load, 0: all across it"},
+    {"localisation", "1", "part of the broken area in the best plane, 2 grains thick"},
+    {"localisation_angle", "rad", "angle between this plane and the load"},
+    {"n_events", "1", "acoustic events"},
+    {"b_value", "1", "b of their magnitudes"},
+    {"b_value_error", "1", "its standard error"},
+    {"n_pieces", "1", "fragments of 2 grains or more"},
+    {"largest_piece", "1", "part of the mass in the largest fragment"}};
+
+static const char no_memory[] = "out of memory", no_break[] = "nothing has broken",
+                  few_facets[] = "fewer than 10 facets have broken";
+
+/* A few facets always have a plane in common. */
+enum { PLANE_FACETS = 10 };
+
+static struct brc_measured measured(double value, const char *note)
+{
+    return (struct brc_measured){note ? NAN : value, note};
+}
+
+/* By the trapezoid rule over the rows, each of which holds means over its steps. The ledger's term
+ * is exact, but kept for the present step alone. */
+static double work_to(const struct brc_rig *rig, size_t row)
+{
+    const struct brc_curve *c = &rig->curve;
+    double work = 0.5 * c->force[0] * c->strain[0];
+    for (size_t i = 1; i <= row; i++)
+        work += 0.5 * (c->force[i] + c->force[i - 1]) * (c->strain[i] - c->strain[i - 1]);
+    return work * rig->length[rig->axis];
+}
+
+static void read_peak(const struct brc_sim *sim, struct brc_measured out[2])
+{
+    const struct brc_rig *rig = &sim->rig;
+    const struct brc_events *e = &sim->events;
+    const char *note = brc_curve_why_no_peak(rig);
+    double energy = 0;
+    size_t row = note ? 0 : brc_curve_peak_row(rig);
+    for (size_t i = 0; !note && i < e->table.n && e->step[i] <= rig->curve.step[row]; i++)
+        energy += e->energy[i];
+    out[0] = measured(note ? NAN : work_to(rig, row), note);
+    out[1] = measured(energy, note);
+}
+
+static void read_angles(const struct brc_sim *sim, struct brc_measured out[2])
+{
+    struct brc_crack_angles a;
+    const char *note = sim->events.table.n == 0 ? no_break : NULL;
+    if (brc_crack_angles_measure(sim->ctx, &sim->events, sim->rig.axis, &a) != 0)
+        note = no_memory;
+    out[0] = measured(a.mean, note);
+    out[1] = measured(a.alignment, note);
+    brc_crack_angles_free(&a);
+}
+
+/* The slab is two mean grain diameters thick: a crack between grains zigzags by one. */
+static void read_plane(const struct brc_sim *sim, struct brc_measured out[2])
+{
+    struct brc_crack_plane plane;
+    double thickness = 4 * sim->skin / sim->run.skin; /* run.skin is in mean grain radii */
+    int code =
+        brc_crack_plane_find(sim->ctx, &sim->events, &sim->specimen->facets, thickness, &plane);
+    const char *note = code != 0 ? no_memory : plane.n < PLANE_FACETS ? few_facets : NULL;
+    out[0] = measured(plane.part, note);
+    out[1] = measured(asin(fmin(fabs(plane.normal[sim->rig.axis]), 1)), note);
+}
+
+static void read_acoustic(const struct brc_sim *sim, struct brc_measured out[3])
+{
+    struct brc_acoustic a;
+    struct brc_b_value b = {0};
+    const char *failed = brc_acoustic_find(sim, &a) != 0 ? no_memory : NULL, *note = failed;
+    size_t n = 0;
+    for (size_t i = 0; i < a.table.n; i++) /* those that have a magnitude */
+        if (isfinite(a.magnitude[i]))
+            a.magnitude[n++] = a.magnitude[i];
+    if (!note)
+        note = brc_b_value_fit(a.magnitude, n, &b);
+    out[0] = measured((double)a.table.n, failed);
+    out[1] = measured(b.b, note);
+    out[2] = measured(b.error, note);
+    brc_acoustic_free(&a);
+}
+
+static void read_fragments(const struct brc_sim *sim, struct brc_measured out[2])
+{
+    struct brc_sieve s;
+    const char *note = brc_sieve_make(sim, &s) != 0 ? no_memory : NULL;
+    out[0] = measured((double)s.n_pieces, note);
+    out[1] = measured(note ? NAN : s.mass[0] / s.whole, note);
+    brc_sieve_free(&s);
+}
+
+void brc_readings(const struct brc_sim *sim, struct brc_measured out[BRC_N_READINGS])
+{
+    for (int m = 0; m < BRC_N_MODES; m++)
+        out[m] = measured((double)sim->events.count[m], NULL);
+    out += BRC_N_MODES;
+    read_peak(sim, out);
+    read_angles(sim, out + 2);
+    read_plane(sim, out + 4);
+    read_acoustic(sim, out + 6);
+    read_fragments(sim, out + 9);
+}
