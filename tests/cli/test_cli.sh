@@ -48,7 +48,8 @@ expect_one_line "$breccia" run absent.yaml
 
 # a run, and what protects it
 expect 0 "results in results/case/$model" "$breccia" run case.yaml
-for file in summary.json curve.csv events.csv broken.csv state.h5 case.yaml log; do
+for file in summary.json curve.csv events.csv broken.csv events_clustered.csv crack_angles.csv fragments.csv \
+    state.h5 case.yaml log; do
     [ -s "results/case/$model/$file" ] ||
         { echo "FAILED: no $file"; failures=$((failures + 1)); }
 done
