@@ -6,7 +6,6 @@
 
 #include "common/engine/rotation.h"
 #include "common/engine/sim.h"
-#include "common/geometry/vec.h"
 #include "common/parallel/sums.h"
 
 /* Exactly, not nearly: scaled moments are set equal, and those of a general grain never are by
@@ -16,24 +15,13 @@ static bool is_isotropic(const double inertia[3])
     return inertia[0] == inertia[1] && inertia[1] == inertia[2];
 }
 
-/* Equal moments turn by the exact rotation of w dt: no splitting, and w stays as it is without a
- * moment. */
-static void turn_isotropic(double q[4], const double w[3], double dt)
-{
-    double phi[3], turn[4], old[4] = {q[0], q[1], q[2], q[3]};
-    brc_scale(phi, w, dt);
-    brc_quat_from_rotation(turn, phi);
-    brc_quat_mul(q, turn, old);
-    brc_rotation_normalise(q);
-}
-
 /* Orientations, in the order of the bodies; before their spin is read for anything else. */
 static void drift_orientations(struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
     for (size_t i = 0; i < b->n_grains; i++) {
         if (is_isotropic(b->inertia[i]))
-            turn_isotropic(b->q[i], b->w[i], sim->dt);
+            brc_rotation_turn(b->q[i], b->w[i], sim->dt);
         else
             brc_rotation_free(b->q[i], b->w[i], b->l[i], b->inertia[i], sim->dt);
     }

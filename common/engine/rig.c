@@ -54,6 +54,8 @@ int brc_rig_create(struct brc_context *ctx, struct brc_rig *rig, const struct br
 
 void brc_rig_free(struct brc_rig *rig)
 {
+    if (rig->type && rig->type->free)
+        rig->type->free(rig->memory);
     brc_table_free(&rig->curve.table);
     brc_table_free(&rig->curve.own);
     brc_table_free(&rig->own_state);

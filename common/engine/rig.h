@@ -132,8 +132,13 @@ struct brc_rig_type {
     int (*check)(struct brc_context *ctx, const struct brc_test_params *test, const void *own);
     /* Velocity of a grain in the field that the test imposes now. Default: at rest. */
     void (*field)(const struct brc_sim *sim, size_t grain, double v[3]);
-    /* The test has reached its end. Default: strain_max, or the load has fallen to stop_drop. */
-    bool (*is_done)(const struct brc_sim *sim);
+    /* The key that has ended the test, NULL while it goes on. Default: test.strain_max, or
+     * test.stop_drop where the load has fallen so far. */
+    const char *(*end)(const struct brc_sim *sim);
+    /* After a saved state has been read: what `memory` derives from it. Default: nothing. */
+    void (*restore)(struct brc_sim *sim);
+    /* Frees `memory`. Default: there is none. */
+    void (*free)(void *memory);
 };
 
 /* A test as a case asks for it. */
@@ -166,7 +171,8 @@ struct brc_test {
 struct brc_rig {
     const struct brc_rig_type *type;
     struct brc_test_params params;
-    void *own; /* parameters of the type's own section; owned */
+    void *own;    /* parameters of the type's own section; owned */
+    void *memory; /* what the type has made in `place`, freed by its `free` */
     int n_platens;
     struct brc_platen platen[BRC_MAX_PLATENS];
     int axis;         /* of the load */

@@ -55,3 +55,13 @@ void brc_rotation_free(double q[4], double w[3], const double l[3], const double
     brc_rotation_normalise(q);
     brc_rotation_spin(w, q, l, inertia);
 }
+
+/* No splitting, and w stays as it is without a moment. */
+void brc_rotation_turn(double q[4], const double w[3], double dt)
+{
+    double phi[3], turn[4], old[4] = {q[0], q[1], q[2], q[3]};
+    brc_scale(phi, w, dt);
+    brc_quat_from_rotation(turn, phi);
+    brc_quat_mul(q, turn, old);
+    brc_rotation_normalise(q);
+}

@@ -11,5 +11,7 @@ void brc_rotation_free(double q[4], double w[3], const double l[3], const double
 /* w = R I^-1 R^T l */
 void brc_rotation_spin(double w[3], const double q[4], const double l[3], const double inertia[3]);
 void brc_rotation_normalise(double q[4]);
+/* By w dt exactly: the way of equal moments, and of what only follows a spin. */
+void brc_rotation_turn(double q[4], const double w[3], double dt);
 
 #endif

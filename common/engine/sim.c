@@ -412,7 +412,6 @@ static int create(struct brc_sim *sim, const void *params, const struct brc_spec
     size_t size = sim->model.params.owner_size;
     sim->specimen = specimen;
     sim->run = *run;
-    choose_damped(sim);
     sim->params = brc_alloc(sim->ctx, 1, size);
     if (!sim->params)
         return BRC_ERR_MEMORY;
@@ -421,6 +420,7 @@ static int create(struct brc_sim *sim, const void *params, const struct brc_spec
     if (sim->model.point_lanes > 0)
         sim->pairs.lanes = sim->platens.lanes = sim->model.point_lanes;
     BRC_TRY(build(sim));
+    choose_damped(sim); /* a test whose load is given decides on its loading as it is placed */
     return start(sim);
 }
 
@@ -490,6 +490,8 @@ int brc_sim_restore(struct brc_sim *sim)
     for (size_t i = 0; i < sim->events.table.n; i++)
         sim->events.count[sim->events.mode[i]]++;
     brc_platens_restore(sim);
+    if (sim->rig.type->restore)
+        sim->rig.type->restore(sim);
     if (sim->model.restore)
         BRC_TRY(sim->model.restore(sim, sim->state));
     if (sim->model.select)

@@ -224,14 +224,16 @@ void brc_loading_step(struct brc_sim *sim)
     change_rate(sim);
 }
 
-bool brc_loading_is_done(const struct brc_sim *sim)
+const char *brc_loading_end(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
     size_t n = rig->curve.table.n;
     if (rig->strain >= rig->params.strain_max)
-        return true;
-    return n > 0 && rig->params.stop_drop > 0 && rig->force_peak > 0 && sim->events.table.n > 0 &&
-           rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
+        return "test.strain_max";
+    bool has_dropped = n > 0 && rig->params.stop_drop > 0 && rig->force_peak > 0 &&
+                       sim->events.table.n > 0 &&
+                       rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
+    return has_dropped ? "test.stop_drop" : NULL;
 }
 
 /* Avalanches only lengthen the way, so what is told is a least number of steps, which falls

@@ -17,8 +17,8 @@ double brc_loading_start_rate(const struct brc_test_params *test);
 /* One step at the present rate: the strain grows, the unbalanced ratio is measured now and then,
  * and the rate changes, with the mean velocities that go along with it. */
 void brc_loading_step(struct brc_sim *sim);
-/* The test has reached strain_max, or the load has fallen to stop_drop of its peak. */
-bool brc_loading_is_done(const struct brc_sim *sim);
+/* "test.strain_max" or "test.stop_drop", when the test has come so far; NULL before. */
+const char *brc_loading_end(const struct brc_sim *sim);
 /* Steps until strain_max at the rate of the loading's present stage, for "time left, at most":
  * HUGE_VAL while adaptive loading has not met damage, as all hangs on where it begins, and without
  * platens. It falls from then on; brakes for avalanches are left out. */

@@ -63,10 +63,10 @@ bool brc_rigs_uses(const struct brc_rig_type *rig, const char *key)
     return false;
 }
 
-bool brc_rigs_done(const struct brc_sim *sim)
+const char *brc_rigs_end(const struct brc_sim *sim)
 {
     const struct brc_rig_type *type = sim->rig.type;
-    return type->is_done ? type->is_done(sim) : brc_loading_is_done(sim);
+    return type->end ? type->end(sim) : brc_loading_end(sim);
 }
 
 static struct brc_result result(const struct brc_quantity *q, const struct brc_measured *m)

@@ -20,8 +20,12 @@ struct brc_test brc_rigs_test(const struct brc_test_params *params, const void *
 /* Whether a test uses a shared key. */
 bool brc_rigs_uses(const struct brc_rig_type *rig, const char *key);
 
-/* The test has reached its end. */
-bool brc_rigs_done(const struct brc_sim *sim);
+/* The key that has ended the test; NULL while it goes on. */
+const char *brc_rigs_end(const struct brc_sim *sim);
+static inline bool brc_rigs_done(const struct brc_sim *sim)
+{
+    return brc_rigs_end(sim) != NULL;
+}
 /* The values measured so far; returns how many: those that the test declares, and those of
  * readings.h. What was not measured has a note: strength and all that hangs on the
  * peak before the load has fallen from it, moduli without a gauge or without two rows. A value that

@@ -213,8 +213,9 @@ static void report(struct run *r, bool is_done, bool is_stopped)
  * step does not make a finished run an interrupted one. */
 static const char *ended_by(const struct brc_sim *sim)
 {
-    if (brc_rigs_done(sim))
-        return sim->rig.strain >= sim->rig.params.strain_max ? "test.strain_max" : "test.stop_drop";
+    const char *key = brc_rigs_end(sim);
+    if (key)
+        return key;
     if (sim->step >= sim->run.max_steps)
         return "run.max_steps";
     return brc_signals_held() ? "signal" : NULL;
@@ -325,7 +326,7 @@ static int measure(struct run *r, struct brc_summary *s)
     snprintf(s->title, sizeof s->title, "%s", run_case->file.head.title);
     snprintf(s->case_name, sizeof s->case_name, "%s", run_case->name);
     snprintf(s->ended_by, sizeof s->ended_by, "%s", r->ended_by ? r->ended_by : "failure");
-    s->is_finished = strncmp(s->ended_by, "test.", 5) == 0;
+    s->is_finished = brc_rigs_done(sim);
     s->n_contacts_mean = r->counts.contact_steps / (double)sim->step;
     s->ns_per_contact_step = 1e9 * r->counts.cpu_s / r->counts.contact_steps;
     s->n_results = brc_rigs_results(sim, s->results);
