@@ -107,6 +107,7 @@ struct brc_rig_type {
     struct brc_param_list params; /* keys of its own, in a section of its name; none: no section */
     struct brc_fieldset state;    /* one row of scalars that are saved with the run */
     struct brc_fieldset columns;  /* its own columns of the curve */
+    struct brc_fieldset along;    /* columns of profile.csv: values along the specimen at the end */
     const struct brc_quantity *quantities;
     int n_quantities;
     int n_platens;
@@ -139,6 +140,8 @@ struct brc_rig_type {
     void (*restore)(struct brc_sim *sim);
     /* Frees `memory`. Default: there is none. */
     void (*free)(void *memory);
+    /* Fills an empty table of the columns `along`. Required where there are any. */
+    int (*profile)(const struct brc_sim *sim, struct brc_table *out);
 };
 
 /* A test as a case asks for it. */

@@ -53,6 +53,20 @@ struct cantilever_columns {
 static const struct brc_field cantilever_columns[] = {CANTILEVER_COLUMNS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
+#define CANTILEVER_PROFILE(SCALAR, VECTOR)                                                       \
+    SCALAR(double, x, BRC_STATE, "m", "place along the beam, from the clamp")                    \
+    SCALAR(double, deflection, BRC_STATE, "m", "mean of the grains there, along the load")       \
+    SCALAR(double, euler, BRC_STATE, "m", "of a beam with E_c and the same tip, without shear")  \
+    SCALAR(double, timoshenko, BRC_STATE, "m", "the same with the part of shear, and E_c_shear") \
+    SCALAR(int64_t, n_grains, BRC_STATE, "1", "grains in the mean; 0: the clamp, the loaded end")
+
+struct cantilever_profile {
+    CANTILEVER_PROFILE(BRC_COLUMN, BRC_COLUMN3)
+};
+#define BRC_OWNER struct cantilever_profile
+static const struct brc_field cantilever_profile[] = {CANTILEVER_PROFILE(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
 enum { E_EULER, E_TIMOSHENKO, TIP, ROOT_FORCE, ROOT_MOMENT, RESIDUAL, N_RESULTS };
 static const struct brc_quantity quantities[N_RESULTS] = {
     [E_EULER] = {"E_c", "Pa", "modulus in bending, from the tip by Euler-Bernoulli"},
@@ -354,6 +368,56 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
     }
 }
 
+/* Deflections of beams with the tip's, by both theories: their moduli then do not matter. */
+static void add_theories(const struct brc_sim *sim, struct cantilever_profile *c, size_t row)
+{
+    const struct beam *beam = sim->rig.memory;
+    double nu = params_of(sim)->poisson, x = c->x[row], l = beam->length;
+    double tip = brc_dead_load_way(sim, beam->load);
+    c->euler[row] = tip * euler(beam, x) / euler(beam, l);
+    c->timoshenko[row] =
+        tip * (euler(beam, x) + shear(beam, x, nu)) / (euler(beam, l) + shear(beam, l, nu));
+}
+
+/* A row a slice of about one grain, by volume: single grains stand out of the line, the more the
+ * fewer there are. The first and the last row are the clamp and the loaded end. */
+static int profile(const struct brc_sim *sim, struct brc_table *out)
+{
+    const struct beam *beam = sim->rig.memory;
+    const struct brc_bodies *b = &sim->bodies;
+    const struct brc_platen *clamp = &sim->rig.platen[0];
+    double grain = cbrt(sim->specimen->domain_volume / (double)b->n_grains);
+    size_t n = (size_t)fmax(1, round(beam->length / grain)), rows = 1;
+    double(*sum)[3] = brc_alloc(sim->ctx, n, sizeof *sum);
+    size_t *grains = brc_alloc(sim->ctx, n, sizeof *grains);
+    int code = sum && grains ? brc_table_resize(sim->ctx, out, n + 2) : BRC_ERR_MEMORY;
+    for (size_t i = 0; code == 0 && i < b->n_grains; i++) {
+        double way[3], x = b->x0[i][sim->rig.axis] - b->x0[clamp->body][sim->rig.axis];
+        size_t slice = (size_t)fmin(fmax(x / beam->length, 0) * (double)n, (double)n - 1);
+        brc_sub(way, b->x[i], b->x0[i]);
+        sum[slice][0] += b->volume[i];
+        sum[slice][1] += b->volume[i] * x;
+        sum[slice][2] += b->volume[i] * brc_dot(way, beam->direction);
+        grains[slice]++;
+    }
+    struct cantilever_profile *c = out->columns;
+    for (size_t i = 0; code == 0 && i < n; i++) {
+        if (grains[i] == 0)
+            continue;
+        c->x[rows] = sum[i][1] / sum[i][0];
+        c->deflection[rows] = sum[i][2] / sum[i][0];
+        c->n_grains[rows++] = (int64_t)grains[i];
+    }
+    free(sum);
+    free(grains);
+    BRC_TRY(code);
+    c->x[rows] = beam->length;
+    c->deflection[rows++] = brc_dead_load_way(sim, beam->load);
+    for (size_t i = 0; i < rows; i++)
+        add_theories(sim, c, i);
+    return brc_table_resize(sim->ctx, out, rows);
+}
+
 static const struct brc_rig_view view = {.strain = "strain",
                                          .strain_label = "deflection / length",
                                          .stress_label = "bending stress at the root"};
@@ -364,6 +428,7 @@ const struct brc_rig_type brc_rig_cantilever = {
     .keys = "strain_max sample_steps",
     .params = BRC_PARAMS(cantilever_params, struct cantilever_params),
     .columns = BRC_FIELDSET(cantilever_columns, struct cantilever_columns),
+    .along = BRC_FIELDSET(cantilever_profile, struct cantilever_profile),
     .quantities = quantities,
     .n_quantities = N_RESULTS,
     .n_platens = 1,
@@ -375,4 +440,5 @@ const struct brc_rig_type brc_rig_cantilever = {
     .results = results,
     .end = end,
     .restore = restore,
-    .free = drop};
+    .free = drop,
+    .profile = profile};

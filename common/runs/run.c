@@ -339,10 +339,30 @@ static int measure(struct run *r, struct brc_summary *s)
     return code;
 }
 
+/* What a test has to tell along the specimen, beside its curve over the steps. */
+static int write_profile(struct run *r)
+{
+    const struct brc_rig_type *type = r->sim.rig.type;
+    struct brc_table table;
+    if (type->along.n == 0)
+        return 0;
+    void *columns = brc_alloc(r->ctx, 1, type->along.owner_size);
+    if (!columns)
+        return BRC_ERR_MEMORY;
+    brc_table_init(&table, "profile", type->along, columns);
+    int code = type->profile(&r->sim, &table);
+    if (code == 0)
+        code = brc_output_csv(r->ctx, r->options->dir, "profile.csv", &table, NULL);
+    brc_table_free(&table);
+    free(columns);
+    return code;
+}
+
 /* Apart from the summary: they are written of a run that has failed, too. */
 static int write_tables(struct run *r)
 {
     const char *dir = r->options->dir;
+    BRC_TRY(write_profile(r));
     BRC_TRY(
         brc_output_csv(r->ctx, dir, "curve.csv", &r->sim.rig.curve.table, &r->sim.rig.curve.own));
     return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table, NULL);

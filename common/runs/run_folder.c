@@ -23,6 +23,7 @@
 static const char *const result_files[] = {"summary.json",
                                            "state.h5",
                                            "curve.csv",
+                                           "profile.csv",
                                            "events.csv",
                                            "broken.csv",
                                            "curves.png",
