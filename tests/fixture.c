@@ -186,6 +186,12 @@ void fixture_loose(struct fixture *f, const struct brc_convex *cell, const doubl
 void fixture_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                  const char *test, const char *run)
 {
+    CHECK_OK(&f->ctx, fixture_try_sim(f, model, settings, test, "", run));
+}
+
+int fixture_try_sim(struct fixture *f, const struct brc_model *model, const char *settings,
+                    const char *test, const char *own, const char *run)
+{
     struct brc_test_params t;
     struct brc_run_params r;
     void *params = calloc(1, model->params.owner_size + 1);
@@ -197,11 +203,17 @@ void fixture_sim(struct fixture *f, const struct brc_model *model, const char *s
     fixture_set(f, model->params, params, settings);
     fixture_set(f, brc_test_param_list, &t, test);
     fixture_set(f, brc_run_param_list, &r, run);
-    const struct brc_test rig = brc_rigs_test(&t, NULL);
+    struct brc_test rig = brc_rigs_test(&t, NULL);
+    void *values = calloc(1, rig.type->params.owner_size + 1);
+    assert_non_null(values);
+    CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, rig.type->params, values));
+    fixture_set(f, rig.type->params, values, own);
+    rig.own = values;
     int code = brc_sim_create(&f->ctx, &f->sim, model, params, &f->specimen, &rig, &r);
     free(params);
-    CHECK_OK(&f->ctx, code);
-    f->has_sim = true;
+    free(values);
+    f->has_sim = code == 0;
+    return code;
 }
 
 void fixture_case(struct fixture *f, const struct brc_model *model, const char *path,

@@ -46,7 +46,11 @@ void fixture_set(struct fixture *f, struct brc_param_list list, void *values, co
 /* A simulation of the specimen; replaces an earlier one. Settings may be "". */
 void fixture_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                  const char *test, const char *run);
-/* The same without platens, in the dynamic regime, without damping of any kind but the model's. */
+/* The same with keys of the test's own section; the code of brc_sim_create. */
+int fixture_try_sim(struct fixture *f, const struct brc_model *model, const char *settings,
+                    const char *test, const char *own, const char *run);
+/* Like fixture_sim without platens, in the dynamic regime, without damping of any kind but the
+ * model's. */
 void fixture_free_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                       const char *run);
 /* Specimen and simulation of a case file, as `breccia run` makes them, after n overrides

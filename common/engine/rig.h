@@ -74,7 +74,7 @@ struct brc_quantity {
 /* What came of it. */
 struct brc_measured {
     double value;     /* NAN: not measured */
-    const char *note; /* why it was not measured; static, NULL where it was */
+    const char *note; /* why it was not measured, or what to know of it; static */
 };
 /* Both, for those who know no test: tables, summaries, calibration. All texts are static, so that a
  * child process can hand a result to its parent as it is. */

@@ -429,7 +429,9 @@ static int write_results(struct run *r, struct brc_summary *out)
     BRC_TRY(brc_output_summary(r->ctx, r->options->dir, "summary.json", out));
     for (int i = 0; i < out->n_results; i++)
         if (out->results[i].note)
-            log_line(r, "%s was not measured: %s", out->results[i].name, out->results[i].note);
+            log_line(r, "%s%s: %s", out->results[i].name,
+                     isfinite(out->results[i].value) ? "" : " was not measured",
+                     out->results[i].note);
     if (*brc_output_energy(out, energy, sizeof energy))
         log_line(r, "%s", energy);
     log_line(r, "ended by %s at step %" PRId64 ", state hash %016" PRIx64, out->ended_by,
