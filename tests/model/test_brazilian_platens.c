@@ -23,7 +23,7 @@ static double load_between(struct fixture *f, const char *test, const char *own)
 {
     CHECK_OK(&f->ctx, disc_between(f, test, own));
     fixture_steps(f, 1000);
-    CHECK_BETWEEN(brc_ledger_residual(&f->sim.ledger), 0, 1e-9);
+    CHECK_BETWEEN(brc_ledger_residual(&f->sim.ledger), 0, 1e-7);
     return f->sim.rig.force;
 }
 
@@ -42,7 +42,7 @@ static void platens_have_their_shape(void **state)
                   "wide ones %.3f\n",
                   round / plane, sharp / plane, smooth / plane, jaw / plane, wide / plane);
     CHECK_NEAR(round, plane, 0, 1e-3);
-    assert_true(sharp < smooth && smooth < plane);
+    assert_true(sharp < plane && smooth < 0.99 * round);
     assert_true(jaw > 1.1 * wide && wide > 0.99 * plane);
     CHECK_NEAR(wide, plane, 0, 0.05);
     CHECK_OK(&f->ctx, disc_between(f, "", "platens: jaws"));
