@@ -141,12 +141,19 @@ static bool put_step(struct brc_converge_setting *s, const struct brc_case *run_
     return factor * run->dt_margin <= 0.95;
 }
 
+/* A test whose load is given has no rate to refine (a cantilever): then steps alone are. */
+static bool has_rate(const struct brc_case *run_case)
+{
+    return brc_rigs_uses(brc_rigs_at(run_case->test.kind), "loading");
+}
+
 /* Finer adaptive loading. Below the target of the case the smallest rate must not hold the rate up,
  * so it falls along. */
 static bool put_target(struct brc_converge_setting *s, const struct brc_case *run_case,
                        const struct brc_converge_model *m, double factor)
 {
-    (void)run_case;
+    if (!has_rate(run_case))
+        return false;
     add_line(s, "test.loading=adaptive");
     add_line(s, "test.target=%.9g", factor * m->test.target);
     if (factor < 1 && m->test.rate_min > 0)
@@ -162,7 +169,8 @@ static bool put_rate(struct brc_converge_setting *s, const struct brc_case *run_
 {
     char text[32];
     double rate = m->test.rate;
-    (void)run_case;
+    if (!has_rate(run_case))
+        return false;
     if (m->test.loading == BRC_LOADING_ADAPTIVE) {
         snprintf(text, sizeof text, "%.1e", m->mean_rate);
         rate = strtod(text, NULL);
@@ -199,8 +207,8 @@ static bool put_grains(struct brc_converge_setting *s, const struct brc_case *ru
 
 static const struct ladder ladders[] = {
     {"step", BRC_CONVERGE_LADDER, 5, {0.25, 0.5, 1, 1.41421356, 2}, NULL, put_step},
-    {"loading", BRC_CONVERGE_LADDER, 0, {0}, NULL, put_target},
-    {"rate", BRC_CONVERGE_LADDER, 0, {0}, "no peak was found", put_rate},
+    {"loading", BRC_CONVERGE_LADDER, 0, {0}, "its load is given", put_target},
+    {"rate", BRC_CONVERGE_LADDER, 0, {0}, "no rate was found", put_rate},
     {"grains", BRC_CONVERGE_GRAINS, 3, {0.8, 1, 1.25}, "its grains are given", put_grains}};
 enum { N_LADDERS = sizeof ladders / sizeof ladders[0] };
 

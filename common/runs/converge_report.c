@@ -10,11 +10,17 @@
 
 const double brc_converge_within[2] = {0.01, 0.05};
 
+/* A test ends by a key of its own or of `test:`; others are run.max_steps, "signal", "failure". */
+static bool is_end_of_test(const char *ended_by)
+{
+    return strchr(ended_by, '.') && strncmp(ended_by, "run.", 4) != 0;
+}
+
 /* It reached the end of the test and measured the observable: a run that max_steps has ended may
  * have a largest load that is no strength. */
 static bool is_good(const struct brc_converge_study *study, const struct brc_converge_run *run)
 {
-    return run->is_done && strncmp(run->ended_by, "test.", 5) == 0 &&
+    return run->is_done && is_end_of_test(run->ended_by) &&
            isfinite(run->result[study->observable]);
 }
 

@@ -76,6 +76,13 @@ values() {
 [ "$(values all/converge_runs.csv)" = "$(values part/converge_runs.csv)" ] ||
     fail "a stopped ladder has other values"
 
+# a test whose load is given has no rate to refine, and ends by a key of its own
+sed 's/^test:.*/test: {kind: cantilever}/' case.yaml >beam.yaml
+expect 0 "its load is given, so the axis loading is left out" "$breccia" converge beam.yaml \
+    --observable E_c --axes loading,step --seeds 1 --refine 2 -o beam
+"$breccia" converge beam.yaml --observable E_c --axes loading,step --seeds 1 --refine 2 -o beam --resume 2>&1 |
+    grep '^case ' | grep -q 'ended' && fail "a cantilever at rest is not counted as ended"
+
 # a record of another test, and one that is damaged
 expect 3 "holds other results" "$breccia" converge case.yaml --set test.kind=brazilian --seeds 1 \
     -o all --resume
