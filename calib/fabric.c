@@ -16,12 +16,7 @@ static int erode_cell(struct brc_context *ctx, const struct brc_facets *f, size_
 {
     BRC_TRY(brc_erosion_begin(ctx, work, f, cell));
     BRC_TRY(brc_erosion_core(ctx, work, r, f->centre[cell]));
-    for (size_t k = 0; k < work->n; k++) {
-        int32_t facet = f->cell_facet[f->cell_first[cell] + k];
-        double *own = &area[facet][f->cell[facet][0] != (int32_t)cell];
-        BRC_TRY(brc_erosion_area(ctx, work, k, own));
-    }
-    return 0;
+    return brc_erosion_areas(ctx, work, area);
 }
 
 /* Areas that bonds have: those of the facets, or the mean of the eroded faces; a face that erosion
@@ -46,18 +41,12 @@ static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
     return code;
 }
 
-/* Radius of a cell's sphere; that of equal volume for a plain Voronoi cell, as vgcm does where a
- * specimen has no spheres. */
-static double sphere_radius(const struct brc_facets *f, int32_t cell)
-{
-    return f->radius[cell] > 0 ? f->radius[cell] : cbrt(3 * f->volume[cell] / (4 * BRC_PI));
-}
-
 /* vgcm's rule: seeds nearer than the two radii and the gap. By seeds and not centres, as the model
  * has it. */
 static bool is_contact(const struct brc_facets *f, size_t i, double seed_distance, double gap)
 {
-    double radii = sphere_radius(f, f->cell[i][0]) + sphere_radius(f, f->cell[i][1]);
+    double radii =
+        brc_facets_radius(f, (size_t)f->cell[i][0]) + brc_facets_radius(f, (size_t)f->cell[i][1]);
     return f->is_contact[i] && seed_distance < radii + gap;
 }
 
@@ -73,10 +62,9 @@ static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
                       struct totals *all)
 {
     const int32_t *cell = f->cell[i];
-    double seeds[3], centres[3];
-    brc_sub(seeds, f->seed[cell[1]], f->seed[cell[0]]);
+    double centres[3], d_seeds = brc_distance(f->seed[cell[0]], f->seed[cell[1]]);
     brc_sub(centres, f->centre[cell[1]], f->centre[cell[0]]);
-    double d_seeds = brc_norm(seeds), d = brc_dot(centres, f->normal[i]);
+    double d = brc_dot(centres, f->normal[i]);
     double length = rules->is_length_of_gap ? 2 * rules->rounding : brc_norm(centres);
     all->seeds += f->area[i] * d_seeds;
     all->centres += f->area[i] * d;

@@ -39,9 +39,8 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t contact
     const struct poly_params *params = poly_params_of(sim);
     struct brc_contacts *c = &sim->pairs;
     struct poly_contacts *columns = c->model_columns;
-    size_t ia = (size_t)c->a[contact], ib = (size_t)c->b[contact];
-    double d[3], ea = st->eroded[facet][0], eb = st->eroded[facet][1];
-    brc_sub(d, sim->bodies.x[ib], sim->bodies.x[ia]);
+    const double *xa = sim->bodies.x[c->a[contact]], *xb = sim->bodies.x[c->b[contact]];
+    double ea = st->eroded[facet][0], eb = st->eroded[facet][1];
     c->facet[contact] = (int32_t)facet;
     /* Erosion may take away a small facet on one side or both. With the area of the facet it is
      * bonded all the same: the rock was bonded there. */
@@ -50,7 +49,7 @@ static void open_bond(struct brc_sim *sim, struct poly_state *st, size_t contact
     if (params->area == POLY_AREA_ERODED)
         columns->bond[contact][POLY_BOND_AREA] = ea == 0 || eb == 0 ? 0 : 0.5 * (ea + eb);
     columns->bond[contact][POLY_BOND_LENGTH] =
-        params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_norm(d);
+        params->strain_length == POLY_LENGTH_GAP ? 2 * params->radius : brc_distance(xa, xb);
     fix_bond(sim, c, contact, f->centroid[facet], f->normal[facet]);
     if (!params->bonds || columns->bond[contact][POLY_BOND_AREA] == 0)
         return;

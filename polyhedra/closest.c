@@ -38,11 +38,10 @@ static void on_point(struct poly_closest *r, const double p[3], const double x[3
 /* Distance of p to a closed edge, whose closest point goes to x. */
 static double to_edge(const struct poly_core *c, int32_t edge, const double p[3], double x[3])
 {
-    double along[3], r[3], t = poly_along_edge(c, edge, p, along);
+    double along[3], t = poly_along_edge(c, edge, p, along);
     brc_copy(x, c->vertex[c->end[edge][0]]);
     brc_axpy(x, poly_least(poly_most(t, 0), 1), along);
-    brc_sub(r, p, x);
-    return brc_norm(r);
+    return brc_distance(x, p);
 }
 
 /* Faces count only from above, and strictly inside their sides: what is on an edge is left to

@@ -40,20 +40,6 @@ static int add_core(struct brc_context *ctx, struct poly_shapes *shapes, struct 
     return poly_shapes_add(ctx, shapes, core);
 }
 
-/* What the core keeps of each of the cell's facets. A facet belongs to two cells, which erode it on
- * their own, so that it has two areas. Bonds may take their mean, and the header says how many
- * facets lose one of them (bonding.c). */
-static int keep_areas(struct brc_context *ctx, struct brc_erosion *e, double (*eroded)[2])
-{
-    const struct brc_facets *f = e->facets;
-    for (size_t k = 0; k < e->n; k++) {
-        int32_t facet = f->cell_facet[f->cell_first[e->index] + k];
-        double *area = &eroded[facet][f->cell[facet][0] != (int32_t)e->index];
-        BRC_TRY(brc_erosion_area(ctx, e, k, area));
-    }
-    return 0;
-}
-
 /* Mass, centre and inertia are those of the cell before erosion: a rock has no gaps where its
  * grains are rounded. */
 static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct brc_erosion *e, size_t i)
@@ -75,7 +61,9 @@ static int shape_cell(struct brc_sim *sim, struct poly_state *st, struct brc_ero
             "polyhedra.radius = %g m erodes grain %zu (volume %g m3) away; all grains keep a core "
             "below %g m, the smallest inscribed sphere: use a smaller radius or larger grains",
             p->radius, i, b->volume[i], smallest_inscribed(e, f, p->radius));
-    BRC_TRY(keep_areas(ctx, e, st->eroded));
+    /* Bonds may take the mean of a facet's two areas, and the header says how many facets lose one
+     * of them (bonding.c). */
+    BRC_TRY(brc_erosion_areas(ctx, e, st->eroded));
     BRC_TRY(add_core(ctx, &st->shapes, &e->core, b->x[i], b->q[i]));
     /* The rounding reaches R farther than any vertex of the core. */
     b->bounding_radius[i] = brc_convex_reach(&e->core, (double[3]){0, 0, 0}) + p->radius;

@@ -10,7 +10,7 @@
  * contact. */
 void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facets)
 {
-    double volume = 0, area = 0, distance = 0, d[3];
+    double volume = 0, area = 0, distance = 0;
     size_t n = 0;
     for (size_t i = 0; i < facets->n_cells; i++)
         volume += facets->volume[i];
@@ -18,9 +18,8 @@ void poly_scale_measure(struct poly_scale *scale, const struct brc_facets *facet
         const int32_t *cell = facets->cell[i];
         if (cell[1] < 0 || !facets->is_contact[i])
             continue;
-        brc_sub(d, facets->centre[cell[1]], facets->centre[cell[0]]);
         area += facets->area[i];
-        distance += brc_norm(d);
+        distance += brc_distance(facets->centre[cell[0]], facets->centre[cell[1]]);
         n++;
     }
     scale->size = cbrt(volume / (double)facets->n_cells);

@@ -18,19 +18,6 @@ static const double NORMAL_COS = 1 - 1e-6, LEAST_COS = 0.01;
  * a Voronoi seed may lie on the platen itself. */
 static const double LEAST_DISTANCE = 0.1;
 
-static double volume_radius(double volume)
-{
-    return cbrt(3 * volume / (4 * BRC_PI));
-}
-
-/* Radius that the gap rule counts with: a plain Voronoi cell stands for a sphere of its volume. A
- * specimen of spheres has their radii, so that the rule counts the gaps that the packing has. */
-static double size_of(const struct brc_facets *facets, size_t cell)
-{
-    double r = facets->radius[cell];
-    return r > 0 ? r : volume_radius(facets->volume[cell]);
-}
-
 /* Spheres of plain Voronoi cells do not overlap by it. */
 double vgcm_radius(const struct brc_facets *facets, size_t cell)
 {
@@ -47,13 +34,14 @@ double vgcm_radius(const struct brc_facets *facets, size_t cell)
 
 static double centre_distance(const struct brc_facets *facets, size_t facet)
 {
-    double branch[3];
-    brc_sub(branch, facets->seed[facets->cell[facet][1]], facets->seed[facets->cell[facet][0]]);
-    return brc_norm(branch);
+    const int32_t *cell = facets->cell[facet];
+    return brc_distance(facets->seed[cell[0]], facets->seed[cell[1]]);
 }
 
-/* The paper does not say which facets are contacts; README.md tells how these rules compare. A
- * facet that rounding has left has no area to be stiff with, and would only cost time. */
+/* The paper does not say which facets are contacts; README.md tells how these rules compare. The
+ * gap rule takes a plain Voronoi cell for a sphere of its volume; a specimen of spheres has their
+ * radii, so that the rule counts the gaps that the packing has. A facet that rounding has left has
+ * no area to be stiff with, and would only cost time. */
 static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params *params,
                       const struct brc_facets *facets, size_t facet)
 {
@@ -64,8 +52,8 @@ static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params
         return true;
     if (params->interaction == VGCM_INTERACTION_AREA)
         return facets->area[facet] >= params->interaction_area * census->mean_area;
-    double ra = size_of(facets, (size_t)facets->cell[facet][0]);
-    double rb = size_of(facets, (size_t)facets->cell[facet][1]);
+    double ra = brc_facets_radius(facets, (size_t)facets->cell[facet][0]);
+    double rb = brc_facets_radius(facets, (size_t)facets->cell[facet][1]);
     return centre_distance(facets, facet) < ra + rb + census->gap;
 }
 
@@ -75,16 +63,11 @@ static bool is_bonded(const struct vgcm_census *census, const struct vgcm_params
 void vgcm_census_measure(struct vgcm_census *census, const struct vgcm_params *params,
                          const struct brc_facets *facets)
 {
-    double diameters = 0, area = 0, sum = 0;
+    double diameters = 0, sum = 0;
     *census = (struct vgcm_census){0};
     for (size_t i = 0; i < facets->n_cells; i++)
-        diameters += 2 * size_of(facets, i);
-    for (size_t i = 0; i < facets->n_facets; i++) {
-        if (facets->cell[i][1] < 0)
-            continue;
-        census->n_inner++;
-        area += facets->area[i];
-    }
+        diameters += 2 * brc_facets_radius(facets, i);
+    double area = brc_facets_inner_area(facets, &census->n_inner);
     census->gap = params->interaction_gap > 0
                       ? params->interaction_gap
                       : params->interaction_gap_ratio * diameters / (double)facets->n_cells;
@@ -299,7 +282,8 @@ static int platen_contact(struct brc_sim *sim, const struct vgcm_law *law, size_
     struct vgcm_contacts *f = vgcm_columns(c);
     const struct brc_platen *platen = brc_sim_platen(sim, c->b[i]);
     int32_t cell = c->a[i];
-    double above, least = LEAST_DISTANCE * volume_radius(sim->specimen->facets.volume[cell]);
+    double volume = sim->specimen->facets.volume[cell];
+    double above, least = LEAST_DISTANCE * cbrt(3 * volume / (4 * BRC_PI));
     centre_height(sim, cell, platen, &above);
     brc_scale(f->n[i], platen->n, -1);
     brc_copy(f->s[i], platen->across);
@@ -348,12 +332,10 @@ static bool touching_distance(const struct brc_sim *sim, const int32_t pair[2], 
                               double *now)
 {
     const struct vgcm_bodies *columns = sim->bodies.model_columns;
-    double branch[3];
     *touch = columns->radius[pair[0]];
     if ((size_t)pair[1] >= sim->bodies.n_grains)
         return centre_height(sim, pair[0], brc_sim_platen(sim, pair[1]), now);
-    brc_sub(branch, sim->bodies.x[pair[1]], sim->bodies.x[pair[0]]);
-    *now = brc_norm(branch);
+    *now = brc_distance(sim->bodies.x[pair[0]], sim->bodies.x[pair[1]]);
     *touch += columns->radius[pair[1]];
     return true;
 }

@@ -14,7 +14,7 @@
 enum { BAR_WIDTH = 24, LABEL_WIDTH = 12 };
 
 /* s: on a terminal as often as an eye follows; in a log seldom, as each line stays. */
-static const double interval_terminal = 0.2, interval_plain = 5;
+static const double interval[] = {[false] = 5, [true] = 0.2};
 static const double smoothing_time = 30; /* s, of the speed */
 
 /* Not the time of day, which may be set while a run goes on. */
@@ -35,11 +35,6 @@ const char *brc_progress_duration(double seconds, char *buffer, size_t size)
     return buffer;
 }
 
-static double interval(bool is_often)
-{
-    return is_often ? interval_terminal : interval_plain;
-}
-
 /* Terminals without cursor movements (TERM=dumb, or none: editors, batch systems) get plain lines.
  */
 static bool is_terminal(FILE *out)
@@ -55,7 +50,7 @@ void brc_progress_begin(struct brc_progress *p, FILE *out, const char *const *la
     p->is_terminal = is_terminal(out);
     p->started = brc_progress_clock();
     /* the first plain line soon, so that a log shows at once that something runs */
-    p->last_drawn = p->started + 1 - interval_plain;
+    p->last_drawn = p->started + 1 - interval[false];
     for (int i = 0; i < n; i++) {
         snprintf(p->run[i].label, sizeof p->run[i].label, "%s", labels[i]);
         p->run[i].time_before = p->started;
@@ -72,7 +67,7 @@ void brc_progress_begin_pipe(struct brc_progress *p, int descriptor)
 bool brc_progress_is_due(const struct brc_progress *p)
 {
     double now = brc_progress_clock();
-    return !p->is_quiet && now - p->last_drawn >= interval(p->is_terminal || p->pipe >= 0);
+    return !p->is_quiet && now - p->last_drawn >= interval[p->is_terminal || p->pipe >= 0];
 }
 
 /* Steps a second, smoothed over the last seconds: a step costs more or less as contacts open.
@@ -185,13 +180,13 @@ void brc_work_begin(struct brc_work *w, const struct brc_context *ctx, const cha
 {
     *w = (struct brc_work){.ctx = ctx, .what = what, .is_terminal = is_terminal(stderr)};
     w->started = brc_progress_clock();
-    w->last_drawn = w->started + 1 - interval(w->is_terminal);
+    w->last_drawn = w->started + 1 - interval[w->is_terminal];
 }
 
 void brc_work_update(struct brc_work *w, double fraction)
 {
     double now = brc_progress_clock();
-    if (w->ctx->quiet || now - w->last_drawn < interval(w->is_terminal))
+    if (w->ctx->quiet || now - w->last_drawn < interval[w->is_terminal])
         return;
     char elapsed[32];
     brc_progress_duration(now - w->started, elapsed, sizeof elapsed);

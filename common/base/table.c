@@ -143,10 +143,8 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n)
             cap = cap <= SIZE_MAX / 2 ? 2 * cap : n;
         return replace_columns(ctx, t, NULL, n, cap);
     }
-    for (int i = 0; n > t->n && i < t->set.n; i++) {
-        size_t size = brc_field_size(&t->set.fields[i]);
-        memset((char *)brc_table_column(t, i) + t->n * size, 0, (round_up(n, ROWS) - t->n) * size);
-    }
+    if (n > t->n)
+        brc_table_clear(t, t->n, round_up(n, ROWS) - t->n);
     t->n = n;
     return 0;
 }
@@ -157,13 +155,13 @@ void brc_table_copy(struct brc_table *t, size_t to, size_t from, size_t n)
     for (int i = 0; i < t->set.n; i++) {
         size_t size = brc_field_size(&t->set.fields[i]);
         char *column = brc_table_column(t, i);
-        memcpy(column + to * size, column + from * size, n * size);
+        memmove(column + to * size, column + from * size, n * size);
     }
 }
 
 void brc_table_clear(struct brc_table *t, size_t first, size_t n)
 {
-    BRC_ASSERT(first + n <= t->n);
+    BRC_ASSERT(first + n <= t->cap);
     for (int i = 0; i < t->set.n; i++) {
         size_t size = brc_field_size(&t->set.fields[i]);
         memset((char *)brc_table_column(t, i) + first * size, 0, n * size);

@@ -92,8 +92,8 @@ int brc_table_resize(struct brc_context *ctx, struct brc_table *t, size_t n);
 #define BRC_NEW_ROW ((size_t)-1)
 /* Row i becomes the old row from[i]; BRC_NEW_ROW gives a zero row. */
 int brc_table_gather(struct brc_context *ctx, struct brc_table *t, const size_t *from, size_t n);
-/* Rows [to, to + n) become copies of [from, from + n), which must not overlap them; and rows of
- * zeros. The row count stays. */
+/* Rows [to, to + n) become copies of [from, from + n), which may overlap them; and rows of zeros,
+ * up to the capacity. The row count stays. */
 void brc_table_copy(struct brc_table *t, size_t to, size_t from, size_t n);
 void brc_table_clear(struct brc_table *t, size_t first, size_t n);
 /* Frees the columns; a half-built or zeroed table is accepted. */

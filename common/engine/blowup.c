@@ -17,12 +17,6 @@ static const double ENERGY_GROWTH = 1000;
 /* Bodies that move by less than this part of the skin in a step are at rest, whatever the ratio. */
 static const double REST = 1e-6;
 
-/* A row of one of the two sets of contacts. */
-struct row {
-    const struct brc_contacts *set;
-    size_t at;
-};
-
 /* ---- the first body ------------------------------------------------------------------------ */
 
 static double path_of(const struct brc_sim *sim, size_t body)
@@ -61,23 +55,23 @@ static size_t worst_body(const struct brc_sim *sim, size_t n,
 
 /* ---- its contact --------------------------------------------------------------------------- */
 
-/* The first row of the body without a number, else that with the largest force; set NULL: none. */
-static struct row worst_row(const struct brc_sim *sim, size_t body)
+/* The set of the body's first contact, contact `at`, whose force is no number, else of that with
+ * the largest force; NULL: it has none. */
+static const struct brc_contacts *worst_contact(const struct brc_sim *sim, size_t body, size_t *at)
 {
-    const struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens};
-    struct row worst = {NULL, 0};
+    const struct brc_contacts *sets[2] = {&sim->pairs, &sim->platens}, *worst = NULL;
     double largest = -1;
     for (int s = 0; s < 2; s++) {
         const struct brc_contacts *c = sets[s];
         for (size_t r = c->adjacent_first[body]; r < c->adjacent_first[body + 1]; r++) {
-            size_t at = c->adjacent[r] / 2;
-            double force = brc_norm(c->f[at]);
-            if (!isfinite(force))
-                return (struct row){c, at};
-            if (force > largest) {
-                largest = force;
-                worst = (struct row){c, at};
-            }
+            size_t i = c->adjacent[r] / 2;
+            double force = brc_norm(c->f[i]);
+            force = isfinite(force) ? force : HUGE_VAL;
+            if (force <= largest)
+                continue;
+            largest = force;
+            worst = c;
+            *at = i;
         }
     }
     return worst;
@@ -88,12 +82,12 @@ static struct row worst_row(const struct brc_sim *sim, size_t body)
 static void describe_contact(const struct brc_sim *sim, size_t body, char text[TEXT_SIZE])
 {
     static const char *const status[] = {"never bonded", "bonded", "broken"};
-    struct row row = worst_row(sim, body);
-    const struct brc_contacts *c = row.set;
+    size_t i;
+    const struct brc_contacts *c = worst_contact(sim, body, &i);
     snprintf(text, TEXT_SIZE, "it has no contact");
     if (!c)
         return;
-    size_t i = row.at, other = (size_t)c->a[i] == body ? (size_t)c->b[i] : (size_t)c->a[i];
+    size_t other = (size_t)c->a[i] == body ? (size_t)c->b[i] : (size_t)c->a[i];
     snprintf(text, TEXT_SIZE,
              "its contact with %s %zu (%s): force %g N, stiffness %g N/m, gap %g m, points %d",
              other < sim->bodies.n_grains ? "grain" : "platen", other, status[c->status[i] % 3],

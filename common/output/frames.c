@@ -94,11 +94,7 @@ static int drop_role(struct brc_context *ctx, struct brc_frames *f, size_t i, ui
     f->role[i] &= (uint8_t)~role;
     if (f->role[i] != 0)
         return 0;
-    for (int k = 0; k < f->table.set.n; k++) {
-        size_t size = brc_field_size(&f->table.set.fields[k]);
-        char *row = (char *)brc_table_column(&f->table, k) + i * size;
-        memmove(row, row + size, (f->table.n - 1 - i) * size);
-    }
+    brc_table_copy(&f->table, i, i + 1, f->table.n - 1 - i);
     return brc_table_resize(ctx, &f->table, f->table.n - 1);
 }
 

@@ -26,24 +26,15 @@ static const double MM = 1e3; /* pictures are in mm */
 
 /* ---- broken area --------------------------------------------------------------------------- */
 
-/* Facets on the boundary cannot break, but at a platen that grips; they are no part of the whole.
- */
-static double inner_area(const struct brc_facets *f)
-{
-    double area = 0;
-    for (size_t i = 0; i < f->n_facets; i++)
-        if (f->cell[i][1] >= 0)
-            area += f->area[i];
-    return area;
-}
-
-/* The rows of the curve, so that the two can be drawn, and read, side by side. */
+/* The rows of the curve, so that the two can be drawn, and read, side by side. Facets on the
+ * boundary cannot break, but at a platen that grips; they are no part of the whole. */
 int brc_plot_broken(struct brc_context *ctx, const char *dir, const struct brc_sim *sim)
 {
     const struct brc_curve *curve = &sim->rig.curve;
     const struct brc_events *e = &sim->events;
-    double sum[BRC_N_MODES] = {0}, all = inner_area(&sim->specimen->facets);
-    size_t k = 0;
+    size_t k = 0, n_inner;
+    double sum[BRC_N_MODES] = {0};
+    double all = brc_facets_inner_area(&sim->specimen->facets, &n_inner);
     struct brc_text_file file;
     BRC_TRY(brc_text_file_begin(ctx, &file, dir, "broken.csv"));
     fputs("step [1],strain [1],tension [1],shear [1],torsion [1]\n", file.out);
@@ -98,8 +89,7 @@ static double facet_opening(const struct brc_sim *sim, size_t facet)
     if (f->cell[facet][1] < 0)
         return 0;
     brc_frame_mesh_sides(sim, facet, f->centroid[facet], low, high);
-    brc_sub(high, high, low);
-    return brc_norm(high);
+    return brc_distance(low, high);
 }
 
 /* The mode with most of the broken area, -1 while less than the part of the facet is broken. The

@@ -196,7 +196,7 @@ static double area_over(struct brc_erosion *e, size_t facet, size_t n, size_t ro
 
 /* A plane with one facet has the whole face of the core. Where several share it, each gets what
  * lies over it: the eroded areas of bonds then sum to the face, with no gap and nothing twice. */
-int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, double *area)
+static int face_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, double *area)
 {
     const struct brc_convex *core = &e->core;
     size_t leader = (size_t)e->facet[k].leader, facet = facet_of(e, k);
@@ -216,6 +216,16 @@ int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, d
     for (size_t v = 0; v < n; v++)
         brc_copy(e->polygon[v], core->vertex[loop[v]]);
     *area = area_over(e, facet, n, room);
+    return 0;
+}
+
+/* A facet belongs to two cells, which erode it on their own, so that it has two areas. */
+int brc_erosion_areas(struct brc_context *ctx, struct brc_erosion *e, double (*area)[2])
+{
+    for (size_t k = 0; k < e->n; k++) {
+        size_t facet = facet_of(e, k);
+        BRC_TRY(face_area(ctx, e, k, &area[facet][e->facets->cell[facet][0] != (int32_t)e->index]));
+    }
     return 0;
 }
 

@@ -32,9 +32,10 @@ int brc_erosion_begin(struct brc_context *ctx, struct brc_erosion *e, const stru
  * point inside the cell. */
 int brc_erosion_core(struct brc_context *ctx, struct brc_erosion *e, double radius,
                      const double centre[3]);
-/* *area [m2]: the part of the core's face that lies over the cell's k-th facet; 0 where erosion has
- * removed the face. The facets of one plane share its face without gaps. */
-int brc_erosion_area(struct brc_context *ctx, struct brc_erosion *e, size_t k, double *area);
+/* area [n_facets][2] [m2]: sets those of the cell's facets, on its side of them (first: the low
+ * cell): the part of the core's face that lies over the facet; 0 where erosion has removed the
+ * face. The facets of one plane share its face without gaps. */
+int brc_erosion_areas(struct brc_context *ctx, struct brc_erosion *e, double (*area)[2]);
 /* Radius of the largest sphere inside the cell, known to be below high [m]. */
 double brc_erosion_inscribed(struct brc_erosion *e, double high);
 

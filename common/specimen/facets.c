@@ -63,17 +63,30 @@ static double volume_error(const struct brc_facets *f, double domain_volume)
     return fabs(sum / domain_volume - 1);
 }
 
+/* Those on the boundary are as large as the cells are cut, and no contact of grains. */
+double brc_facets_inner_area(const struct brc_facets *f, size_t *n)
+{
+    double area = 0;
+    *n = 0;
+    for (size_t i = 0; i < f->n_facets; i++)
+        if (f->cell[i][1] >= 0) {
+            area += f->area[i];
+            ++*n;
+        }
+    return area;
+}
+
+double brc_facets_radius(const struct brc_facets *f, size_t cell)
+{
+    return f->radius[cell] > 0 ? f->radius[cell] : cbrt(3 * f->volume[cell] / (4 * BRC_PI));
+}
+
 /* Of the mean inner area, so that the limit goes with the size of the grains. Facets on the
  * boundary always count: platens bear on all of them. */
 void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio)
 {
-    double total = 0;
-    size_t n = 0;
-    for (size_t i = 0; i < f->n_facets; i++)
-        if (f->cell[i][1] >= 0) {
-            total += f->area[i];
-            n++;
-        }
+    size_t n;
+    double total = brc_facets_inner_area(f, &n);
     double limit = n > 0 ? min_area_ratio * total / (double)n : 0;
     f->area_dropped = 0;
     for (size_t i = 0; i < f->n_facets; i++) {

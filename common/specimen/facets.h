@@ -53,6 +53,10 @@ void brc_facets_shift(struct brc_facets *f, const double by[3]);
  * facets are kept and only marked: a cell without them would be open, while a contact over one
  * would have next to no stiffness and a normal that is rounding. */
 void brc_facets_mark_contacts(struct brc_facets *f, double min_area_ratio);
+/* Sum of the areas between two cells [m2], and their number *n. */
+double brc_facets_inner_area(const struct brc_facets *f, size_t *n);
+/* m, of a cell's sphere, or where the specimen has none that of a sphere of the cell's volume. */
+double brc_facets_radius(const struct brc_facets *f, size_t cell);
 /* m, twice the area over the perimeter: what a facet is wide where it is narrow. */
 double brc_facets_width(const struct brc_facets *f, size_t facet);
 /* Planes of a cell's facets, outward, id = facet; n = cell_first[c+1] - cell_first[c]. */

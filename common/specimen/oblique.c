@@ -18,18 +18,12 @@ static const double DIRECTION[][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 
                                       {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
 enum { N_DIRECTIONS = sizeof DIRECTION / sizeof *DIRECTION };
 
-static void branch_of(double branch[3], const struct brc_facets *f, double (*centre)[3],
-                      size_t facet)
-{
-    brc_sub(branch, centre[f->cell[facet][1]], centre[f->cell[facet][0]]);
-}
-
 /* The normal points out of the first cell, so that the cosine is positive where the second centre
  * lies beyond the facet. */
 double brc_oblique_cos(const struct brc_facets *f, double (*centre)[3], size_t facet)
 {
     double branch[3];
-    branch_of(branch, f, centre, facet);
+    brc_sub(branch, centre[f->cell[facet][1]], centre[f->cell[facet][0]]);
     return brc_dot(branch, f->normal[facet]) / brc_norm(branch);
 }
 
@@ -73,7 +67,7 @@ void brc_oblique_measure(struct brc_oblique *o, const struct brc_facets *f, doub
         if (!is_counted(f, i) || f->area[i] <= least)
             continue;
         double branch[3], cosine = brc_oblique_cos(f, centre, i);
-        branch_of(branch, f, centre, i);
+        brc_sub(branch, centre[f->cell[i][1]], centre[f->cell[i][0]]);
         area += f->area[i];
         sum += f->area[i] * cosine;
         volume += f->area[i] * cosine * brc_norm(branch);
