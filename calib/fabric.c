@@ -41,22 +41,14 @@ static int bond_areas(struct brc_context *ctx, const struct brc_facets *f,
     return code;
 }
 
-/* vgcm's rule: seeds nearer than the two radii and the gap. By seeds and not centres, as the model
- * has it. */
-static bool is_contact(const struct brc_facets *f, size_t i, double seed_distance, double gap)
-{
-    double radii =
-        brc_facets_radius(f, (size_t)f->cell[i][0]) + brc_facets_radius(f, (size_t)f->cell[i][1]);
-    return f->is_contact[i] && seed_distance < radii + gap;
-}
-
 /* Sums over all inner facets, in the end the divisors of the others. */
 struct totals {
     double seeds, centres; /* m3: sum of A d by the seeds and by the centres, along the normal */
     size_t n_bonds;
 };
 
-/* Bonds join cells, so that their sums take the centres; contacts of spheres join seeds. */
+/* Bonds join cells, so that their sums take the centres; contacts of spheres join seeds, those that
+ * are nearer than the two radii and the gap (the rule of vgcm). */
 static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
                       const struct calib_fabric_rules *rules, struct calib_fabric *sum,
                       struct totals *all)
@@ -74,7 +66,8 @@ static void add_facet(const struct brc_facets *f, size_t i, double bond_area,
         sum->corners += (double)(f->first[i + 1] - f->first[i]) * d * d;
         sum->stretch += d / length;
     }
-    if (is_contact(f, i, d_seeds, rules->gap)) {
+    double radii = brc_facets_radius(f, (size_t)cell[0]) + brc_facets_radius(f, (size_t)cell[1]);
+    if (f->is_contact[i] && d_seeds < radii + rules->gap) {
         sum->n_contacts++;
         sum->mean_distance += d_seeds;
         sum->coverage += f->area[i] * d_seeds;

@@ -8,22 +8,18 @@
 #include "common/engine/sim.h"
 #include "common/parallel/sums.h"
 
-/* Exactly, not nearly: scaled moments are set equal, and those of a general grain never are by
- * chance. */
-static bool is_isotropic(const double inertia[3])
-{
-    return inertia[0] == inertia[1] && inertia[1] == inertia[2];
-}
-
 /* Orientations, in the order of the bodies; before their spin is read for anything else. */
 static void drift_orientations(struct brc_sim *sim)
 {
     const struct brc_bodies *b = &sim->bodies;
     for (size_t i = 0; i < b->n_grains; i++) {
-        if (is_isotropic(b->inertia[i]))
+        const double *inertia = b->inertia[i];
+        /* exactly, not nearly: scaled moments are set equal, and those of a general grain never are
+         * by chance */
+        if (inertia[0] == inertia[1] && inertia[1] == inertia[2])
             brc_rotation_turn(b->q[i], b->w[i], sim->dt);
         else
-            brc_rotation_free(b->q[i], b->w[i], b->l[i], b->inertia[i], sim->dt);
+            brc_rotation_free(b->q[i], b->w[i], b->l[i], inertia, sim->dt);
     }
 }
 

@@ -226,12 +226,12 @@ static void put_outline(FILE *out, const struct brc_convex *c, const struct brc_
 /* A step of 1, 2 or 5 times a power of ten that gives at most `most` steps over the length. */
 static double tic_step(double length, int most)
 {
-    static const double nice[] = {1, 2, 5};
+    static const double nice[] = {1, 2, 5, 10};
     double step = pow(10, floor(log10(length / most)));
-    for (int i = 0; i < 3; i++)
-        if (nice[i] * step * most >= length)
-            return nice[i] * step;
-    return 10 * step;
+    int i = 0;
+    while (i < 3 && nice[i] * step * most < length)
+        i++;
+    return nice[i] * step;
 }
 
 /* Scale of `set view` that fits the specimen into a panel, the size of which is given in heights of

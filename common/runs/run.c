@@ -368,33 +368,28 @@ static int write_tables(struct run *r)
     return brc_output_csv(r->ctx, dir, "events.csv", &r->sim.events.table, NULL);
 }
 
-static int write_events(struct run *r)
+/* What is read off the finished run, each a table of its own: all are made before one is written.
+ */
+static int write_readings(struct run *r)
 {
-    struct brc_acoustic a;
-    int code = brc_acoustic_find(&r->sim, &a);
+    const char *dir = r->options->dir;
+    struct brc_acoustic events = {0};
+    struct brc_crack_angles angles = {0};
+    struct brc_sieve sieve = {0};
+    int code = brc_acoustic_find(&r->sim, &events);
     if (code == 0)
-        code = brc_output_csv(r->ctx, r->options->dir, "events_clustered.csv", &a.table, NULL);
-    brc_acoustic_free(&a);
-    return code;
-}
-
-static int write_angles(struct run *r)
-{
-    struct brc_crack_angles a;
-    int code = brc_crack_angles_measure(r->ctx, &r->sim.events, r->sim.rig.axis, &a);
+        code = brc_crack_angles_measure(r->ctx, &r->sim.events, r->sim.rig.axis, &angles);
     if (code == 0)
-        code = brc_output_csv(r->ctx, r->options->dir, "crack_angles.csv", &a.table, NULL);
-    brc_crack_angles_free(&a);
-    return code;
-}
-
-static int write_fragments(struct run *r)
-{
-    struct brc_sieve s;
-    int code = brc_sieve_make(&r->sim, &s);
+        code = brc_sieve_make(&r->sim, &sieve);
     if (code == 0)
-        code = brc_output_csv(r->ctx, r->options->dir, "fragments.csv", &s.table, NULL);
-    brc_sieve_free(&s);
+        code = brc_output_csv(r->ctx, dir, "events_clustered.csv", &events.table, NULL);
+    if (code == 0)
+        code = brc_output_csv(r->ctx, dir, "crack_angles.csv", &angles.table, NULL);
+    if (code == 0)
+        code = brc_output_csv(r->ctx, dir, "fragments.csv", &sieve.table, NULL);
+    brc_acoustic_free(&events);
+    brc_crack_angles_free(&angles);
+    brc_sieve_free(&sieve);
     return code;
 }
 
@@ -423,9 +418,7 @@ static int write_results(struct run *r, struct brc_summary *out)
     char energy[512];
     BRC_TRY(measure(r, out));
     BRC_TRY(write_tables(r));
-    BRC_TRY(write_events(r));
-    BRC_TRY(write_angles(r));
-    BRC_TRY(write_fragments(r));
+    BRC_TRY(write_readings(r));
     BRC_TRY(brc_output_summary(r->ctx, r->options->dir, "summary.json", out));
     for (int i = 0; i < out->n_results; i++)
         if (out->results[i].note)
