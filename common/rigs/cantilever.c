@@ -112,8 +112,8 @@ static bool is_beam(const struct brc_specimen *s, int axis, int along, struct br
     struct brc_end_face other;
     brc_specimen_extent(s, low, high);
     double mean = s->domain_volume / (high[axis] - low[axis]);
-    brc_end_face_measure(s, (struct brc_end){axis, true}, along, &other);
-    brc_end_face_measure(s, (struct brc_end){axis, false}, along, face);
+    brc_end_face_measure(s, brc_end_of(s, axis, true), along, &other);
+    brc_end_face_measure(s, brc_end_of(s, axis, false), along, face);
     return fabs(face->area - mean) < FLAT * mean && fabs(other.area - mean) < FLAT * mean;
 }
 
@@ -209,7 +209,7 @@ static int place(struct brc_sim *sim)
     rig->section = face.second / (beam->length * face.farthest);
     rig->params.loading = BRC_LOADING_FIXED;
     place_clamp(sim, axis, along, &face);
-    return brc_dead_load_create(sim, (struct brc_end){axis, true}, beam->direction,
+    return brc_dead_load_create(sim, brc_end_of(sim->specimen, axis, true), beam->direction,
                                 p->load_follows == 1, &beam->load);
 }
 

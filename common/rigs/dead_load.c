@@ -70,7 +70,7 @@ int brc_dead_load_create(struct brc_sim *sim, struct brc_end end, const double d
         return BRC_ERR_MEMORY;
     }
     brc_copy(d->direction, direction);
-    d->outward[end.axis] = end.is_high ? 1 : -1;
+    d->outward[end.axis] = end.sense;
     d->is_followed = is_followed;
     brc_end_face_measure(sim->specimen, end, (end.axis + 1) % 3, &face);
     collect(sim, end, face.area, d);

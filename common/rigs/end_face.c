@@ -13,15 +13,21 @@
  * the digits of a tessellation read from a file allow (as in platens.c). */
 static const double ON_END = 1e-6;
 
+struct brc_end brc_end_of(const struct brc_specimen *s, int axis, bool is_high)
+{
+    double low[3], high[3];
+    brc_specimen_extent(s, low, high);
+    return (struct brc_end){.axis = axis,
+                            .sense = is_high ? 1 : -1,
+                            .plane = is_high ? high[axis] : low[axis],
+                            .allowed = ON_END * (high[axis] - low[axis])};
+}
+
 bool brc_end_has(const struct brc_specimen *s, struct brc_end end, size_t facet)
 {
     const struct brc_facets *f = &s->facets;
-    double low[3], high[3], sense = end.is_high ? 1 : -1;
-    int k = end.axis;
-    brc_specimen_extent(s, low, high);
-    double off = f->centroid[facet][k] - (end.is_high ? high[k] : low[k]);
-    return f->cell[facet][1] < 0 && sense * f->normal[facet][k] > 1 - ON_END &&
-           fabs(off) < ON_END * (high[k] - low[k]);
+    return f->cell[facet][1] < 0 && end.sense * f->normal[facet][end.axis] > 1 - ON_END &&
+           fabs(f->centroid[facet][end.axis] - end.plane) < end.allowed;
 }
 
 /* Second moments of the end about its middle: along, across, mixed. */

@@ -8,7 +8,9 @@
 /* The end of the specimen at one side of an axis. */
 struct brc_end {
     int axis;
-    bool is_high; /* at the upper end of the axis, else at the lower one */
+    double sense;   /* +1 at the upper end of the axis, -1 at the lower one */
+    double plane;   /* m, where it lies on the axis */
+    double allowed; /* m, how far off a facet may lie */
 };
 
 /* What a beam of this section is made of; along: the direction in which it bends. */
@@ -19,7 +21,10 @@ struct brc_end_face {
     double farthest; /* m, from the middle along the direction */
 };
 
-/* Whether a boundary facet lies in the plane of the end, to the rounding of a tessellation. */
+/* The extent of a specimen is that of all its vertices: found once, not for each facet. */
+struct brc_end brc_end_of(const struct brc_specimen *s, int axis, bool is_high);
+/* Whether a facet is of the boundary and lies in the plane of the end, to the rounding of a
+ * tessellation. */
 bool brc_end_has(const struct brc_specimen *s, struct brc_end end, size_t facet);
 void brc_end_face_measure(const struct brc_specimen *s, struct brc_end end, int along,
                           struct brc_end_face *out);
