@@ -186,7 +186,13 @@ void fixture_loose(struct fixture *f, const struct brc_convex *cell, const doubl
 void fixture_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                  const char *test, const char *run)
 {
-    CHECK_OK(&f->ctx, fixture_try_sim(f, model, settings, test, "", run));
+    fixture_test(f, model, settings, test, "", run);
+}
+
+void fixture_test(struct fixture *f, const struct brc_model *model, const char *settings,
+                  const char *test, const char *own, const char *run)
+{
+    CHECK_OK(&f->ctx, fixture_try_sim(f, model, settings, test, own, run));
 }
 
 int fixture_try_sim(struct fixture *f, const struct brc_model *model, const char *settings,

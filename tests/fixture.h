@@ -46,7 +46,9 @@ void fixture_set(struct fixture *f, struct brc_param_list list, void *values, co
 /* A simulation of the specimen; replaces an earlier one. Settings may be "". */
 void fixture_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                  const char *test, const char *run);
-/* The same with keys of the test's own section; the code of brc_sim_create. */
+/* The same with keys of the test's own section; and with the code of brc_sim_create. */
+void fixture_test(struct fixture *f, const struct brc_model *model, const char *settings,
+                  const char *test, const char *own, const char *run);
 int fixture_try_sim(struct fixture *f, const struct brc_model *model, const char *settings,
                     const char *test, const char *own, const char *run);
 /* Like fixture_sim without platens, in the dynamic regime, without damping of any kind but the

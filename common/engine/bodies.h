@@ -35,7 +35,10 @@
     VECTOR(double, v_mean, 3, BRC_STATE, "m s-1", "mean velocity of the last steps")            \
     VECTOR(double, w_mean, 3, BRC_STATE, "rad s-1", "mean angular velocity of the last steps")  \
     VECTOR(double, x0, 3, BRC_STATE, "m", "centre of mass at the start")                        \
-    VECTOR(double, q0, 4, BRC_STATE, "1", "orientation at the start")
+    VECTOR(double, q0, 4, BRC_STATE, "1", "orientation at the start")                           \
+    VECTOR(double, side_area, 3, BRC_STATE, "m2", "force of a unit pressure on the sides")      \
+    VECTOR(double, side_moment, 3, BRC_STATE, "m3", "its moment about the centre")              \
+    SCALAR(uint8_t, has_left, BRC_STATE, "1", "1: no longer part of the specimen's sides")
 
 struct brc_bodies {
     BRC_BODY_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED)

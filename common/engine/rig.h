@@ -112,6 +112,7 @@ struct brc_rig_type {
     int n_quantities;
     int n_platens;
     int sides; /* of the polygon that stands for a circle, unless the case says; 0: as for any */
+    bool has_sides;                  /* it acts on the specimen's sides: pressure.h */
     const struct brc_rig_view *view; /* NULL: stress over the gauge strains, cracks from the side */
 
     /* --- required --- */
@@ -159,6 +160,12 @@ struct brc_test {
     X(double, kinetic_elastic, "J s2", "adaptive: kinetic energy / rate^2")                     \
     RENAMED(int64_t, is_post_peak, is_lost, "1", "adaptive: the load has fallen from its peak") \
     RENAMED(int64_t, is_steady, is_settled, "1", "the start has been left behind")              \
+    X(int64_t, stage, "1", "stage of the loading, from 0")                                      \
+    X(int64_t, stage_step, "1", "step at which it began")                                       \
+    X(int64_t, stage_row, "1", "row of the curve with which it began")                          \
+    X(int64_t, stage_events, "1", "events that are no sign of damage in it")                    \
+    X(double, stage_strain, "1", "platen strain at which it began")                             \
+    X(double, stage_sense, "1", "+1: the platen strain grows, -1: it falls")                    \
     X(double, strain, "1", "platen strain, in the sense of the test")                           \
     X(double, force, "N", "mean platen force now, in the sense of the test")                    \
     X(double, force_sum, "N", "sum of force since the last row of the curve")                   \

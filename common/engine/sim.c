@@ -378,6 +378,8 @@ static int make_tables(struct brc_sim *sim, size_t n_grains, size_t n_platens)
     BRC_TRY(brc_contacts_create(sim->ctx, &sim->platens, "platens", n, m->contact_fields,
                                 m->point_fields));
     brc_table_leave_out(&sim->bodies.table, m->no_bodies);
+    if (!sim->rig.type->has_sides)
+        brc_table_leave_out(&sim->bodies.table, "side_area side_moment has_left");
     leave_out(&sim->pairs, m->no_pairs);
     leave_out(&sim->platens, m->no_platens);
     return 0;

@@ -23,10 +23,7 @@ static const char no_reversal[] =
 static const double LEFT = 0.01;
 
 const struct brc_quantity brc_compression_quantities[BRC_N_COMPRESSION_RESULTS] = {
-    BRC_CORE_QUANTITIES,
-    {"ci_lateral", "Pa", "crack initiation by the lateral strain response"},
-    {"ci_volumetric", "Pa", "crack initiation by crack volumetric strain"},
-    {"cd", "Pa", "crack damage: the volumetric strain turns round"}};
+    BRC_COMPRESSION_QUANTITIES};
 
 static struct brc_measured at_row(const struct brc_strains *r, size_t row, const char *note)
 {
@@ -106,7 +103,9 @@ void brc_compression_results(const struct brc_sim *sim, struct brc_measured *out
             out[BRC_N_CORE_RESULTS + i] = (struct brc_measured){NAN, note};
         return;
     }
-    const struct brc_strains rows = {c->stress, c->strain_axial, c->strain_lateral,
-                                     brc_curve_peak_row(rig) + 1};
+    size_t first = (size_t)rig->stage_row;
+    const struct brc_strains rows = {c->stress + first, c->strain_axial + first,
+                                     c->strain_lateral + first,
+                                     brc_curve_peak_row(rig) + 1 - first};
     brc_crack_stresses(&rows, out[0].value, out[1].value, out + BRC_N_CORE_RESULTS);
 }

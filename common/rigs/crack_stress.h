@@ -19,6 +19,12 @@ void brc_crack_stresses(const struct brc_strains *rows, double E, double nu,
                         struct brc_measured out[BRC_N_CRACK_STRESSES]);
 
 /* Moduli, peak and these, to stand in the table of a test that compresses a core. */
+#define BRC_COMPRESSION_QUANTITIES                                                                \
+    BRC_CORE_QUANTITIES, {"ci_lateral", "Pa", "crack initiation by the lateral strain response"}, \
+        {"ci_volumetric", "Pa", "crack initiation by crack volumetric strain"},                   \
+    {                                                                                             \
+        "cd", "Pa", "crack damage: the volumetric strain turns round"                             \
+    }
 enum { BRC_N_COMPRESSION_RESULTS = BRC_N_CORE_RESULTS + BRC_N_CRACK_STRESSES };
 extern const struct brc_quantity brc_compression_quantities[BRC_N_COMPRESSION_RESULTS];
 void brc_compression_results(const struct brc_sim *sim, struct brc_measured *out);

@@ -63,7 +63,7 @@ double brc_curve_unbalanced_max(const struct brc_sim *sim)
 {
     const struct brc_curve *c = &sim->rig.curve;
     double largest = 0, peak = sim->rig.force_peak;
-    for (size_t i = 0; i < c->table.n; i++) {
+    for (size_t i = (size_t)sim->rig.stage_row; i < c->table.n; i++) {
         if (c->force[i] >= 0.1 * peak)
             largest = fmax(largest, c->unbalanced[i]);
         if (c->force[i] == peak)
@@ -75,7 +75,7 @@ double brc_curve_unbalanced_max(const struct brc_sim *sim)
 size_t brc_curve_peak_row(const struct brc_rig *rig)
 {
     const struct brc_curve *c = &rig->curve;
-    size_t i = 0;
+    size_t i = (size_t)rig->stage_row;
     while (i < c->table.n && c->force[i] != rig->force_peak)
         i++;
     return i;
@@ -123,7 +123,8 @@ void brc_curve_peak_results(const struct brc_sim *sim, struct brc_measured *out)
 {
     const struct brc_rig *rig = &sim->rig;
     const char *note = brc_curve_why_no_peak(rig);
-    const double value[] = {rig->force_peak / rig->section, rig->strain_peak, rig->force_peak};
+    const double value[] = {rig->force_peak / rig->section, rig->strain_peak - rig->stage_strain,
+                            rig->force_peak};
     for (int i = 0; i < 3; i++)
         out[i] = (struct brc_measured){note ? NAN : value[i], note};
     out[3] = first_broken(sim, note);

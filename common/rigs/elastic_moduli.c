@@ -31,11 +31,11 @@ int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *t)
 
 /* Rows between the two parts of the peak, on the way up: [*first, *end). By the force and not by
  * the strain, as the elastic part of a specimen ends at a part of its strength. */
-static void modulus_rows(const struct brc_rig *rig, size_t *first, size_t *end)
+void brc_moduli_rows(const struct brc_rig *rig, size_t *first, size_t *end)
 {
     const struct brc_curve *c = &rig->curve;
     double peak = rig->force_peak;
-    size_t i = 0;
+    size_t i = (size_t)rig->stage_row;
     while (i < c->table.n && c->force[i] < rig->params.modulus_low * peak)
         i++;
     *first = i;
@@ -69,7 +69,7 @@ void brc_core_results(const struct brc_sim *sim, struct brc_measured *out)
     const struct brc_rig *rig = &sim->rig;
     const struct brc_curve *c = &rig->curve;
     size_t first, end;
-    modulus_rows(rig, &first, &end);
+    brc_moduli_rows(rig, &first, &end);
     bool is_gauged = rig->has_gauge[rig->axis];
     bool is_wide = rig->has_gauge[0] && rig->has_gauge[1] && rig->has_gauge[2];
     const char *load = brc_curve_why_no_peak(rig);

@@ -23,6 +23,8 @@ void brc_core_results(const struct brc_sim *sim, struct brc_measured *out);
     .quantities = brc_core_quantities, .n_quantities = BRC_N_CORE_RESULTS, \
     .results = brc_core_results, .sides = BRC_CORE_SIDES
 
+/* Rows of the curve between modulus_low and modulus_high of the peak: [*first, *end). */
+void brc_moduli_rows(const struct brc_rig *rig, size_t *first, size_t *end);
 /* The keys of the moduli together. */
 int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *test);
 

@@ -87,6 +87,22 @@ static void sum_sizes(const struct brc_sim *sim, double *on_grains, double *of_c
     *of_contacts = brc_sum_exact(b->terms, b->n_grains);
 }
 
+double brc_loading_strain(const struct brc_rig *rig)
+{
+    return rig->stage_sense * (rig->strain - rig->stage_strain);
+}
+
+/* What has broken since the present stage began, and may be the onset of damage in it. */
+static size_t n_events(const struct brc_sim *sim)
+{
+    return sim->events.table.n - (size_t)sim->rig.stage_events;
+}
+
+static int64_t steps_in_stage(const struct brc_sim *sim)
+{
+    return sim->step - sim->rig.stage_step;
+}
+
 /* Mean unbalanced force on a grain over mean contact force. */
 static double unbalanced_ratio(const struct brc_sim *sim)
 {
@@ -101,10 +117,11 @@ static double unbalanced_ratio(const struct brc_sim *sim)
 /* The start is over when the field of velocities is that of steady loading. */
 static bool is_steady(const struct brc_sim *sim)
 {
+    int64_t steps = steps_in_stage(sim);
     bool is_calm =
-        sim->step >= LEAST_START && sim->rig.unbalanced < 0.5 * DAMAGING * sim->rig.params.target;
-    bool is_late = (double)sim->step >= LONGEST_START / sim->rig.params.target;
-    return is_calm || is_late || sim->events.table.n > 0;
+        steps >= LEAST_START && sim->rig.unbalanced < 0.5 * DAMAGING * sim->rig.params.target;
+    bool is_late = (double)steps >= LONGEST_START / sim->rig.params.target;
+    return is_calm || is_late || n_events(sim) > 0;
 }
 
 /* Up to the onset of damage: what kinetic energy goes with a rate, and whether damage has begun.
@@ -117,8 +134,8 @@ static void watch_elastic(struct brc_sim *sim)
     double weight = rig->kinetic_elastic > 0 ? ELASTIC_WEIGHT : 1;
     rig->kinetic_elastic += weight * (kinetic - rig->kinetic_elastic);
     bool is_shaken = rig->is_steady && rig->unbalanced > DAMAGING * rig->params.target;
-    if (is_shaken || sim->events.table.n > 0)
-        rig->strain_onset = rig->strain;
+    if (is_shaken || n_events(sim) > 0)
+        rig->strain_onset = brc_loading_strain(rig);
 }
 
 /* What was taken for the onset of damage was none: nothing has broken, and all is still. Without it
@@ -126,7 +143,7 @@ static void watch_elastic(struct brc_sim *sim)
 static bool was_false_alarm(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
-    return sim->events.table.n == 0 && rig->strain > BEYOND * rig->strain_onset &&
+    return n_events(sim) == 0 && brc_loading_strain(rig) > BEYOND * rig->strain_onset &&
            rig->unbalanced < STILL * rig->params.target;
 }
 
@@ -148,8 +165,8 @@ static double wanted_rate(const struct brc_sim *sim)
     const struct brc_rig *rig = &sim->rig;
     double target = rig->params.target / sim->dt;
     if (rig->strain_onset == 0)
-        return fmax(rig->rate, ELASTIC * target * rig->strain);
-    double base = target * (rig->is_post_peak ? rig->strain : rig->strain_onset);
+        return fmax(rig->rate, ELASTIC * target * brc_loading_strain(rig));
+    double base = target * (rig->is_post_peak ? brc_loading_strain(rig) : rig->strain_onset);
     return base * avalanche_factor(sim, base);
 }
 
@@ -187,6 +204,11 @@ static void change_velocities(struct brc_sim *sim, double part)
         brc_axpy(b->w_mean[i], part, b->w_mean[i]);
     }
     sim->ledger.rate_change -= brc_sum_exact(b->terms, b->n_grains);
+    for (size_t i = b->n_grains; i < b->n;
+         i++) { /* those that a force pushes; others have no mean */
+        brc_axpy(b->v[i], part, b->v_mean[i]);
+        brc_axpy(b->v_mean[i], part, b->v_mean[i]);
+    }
 }
 
 /* Velocities are in proportion to the rate as far as their energy is that of elastic loading; those
@@ -213,27 +235,49 @@ static void change_rate(struct brc_sim *sim)
 void brc_loading_step(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
-    rig->strain += rig->rate * sim->dt;
+    rig->strain += rig->stage_sense * rig->rate * sim->dt;
     rig->strain_sum += rig->strain;
     if (sim->step % UNBALANCED_STEPS == 0) {
         rig->unbalanced = unbalanced_ratio(sim);
         rig->is_steady = rig->is_steady || is_steady(sim);
     }
-    if (sim->step >= LEAST_START && rig->params.loading == BRC_LOADING_ADAPTIVE)
+    if (steps_in_stage(sim) >= LEAST_START && rig->params.loading == BRC_LOADING_ADAPTIVE)
         choose_change(sim);
     change_rate(sim);
+}
+
+/* A stage begins as a test does: slowly, as nothing is known of how far its damage is, and with all
+ * motion damped until that of the stage before has died away. What broke before is no sign of
+ * damage in it, or a single break in a ramp would hold up the shearing. */
+void brc_loading_begin_stage(struct brc_sim *sim, double sense)
+{
+    struct brc_rig *rig = &sim->rig;
+    rig->stage++;
+    rig->stage_step = sim->step;
+    rig->stage_row = (int64_t)rig->curve.table.n;
+    rig->stage_events = (int64_t)sim->events.table.n;
+    rig->stage_strain = rig->strain;
+    rig->stage_sense = sense;
+    rig->strain_onset = rig->kinetic_elastic = 0;
+    rig->force_peak = rig->strain_peak = 0;
+    rig->is_post_peak = rig->is_steady = 0;
+    rig->change = 0;
+    double rate = fmin(rig->rate, rig->params.rate);
+    if (sim->tracks_mean)
+        change_velocities(sim, rate / rig->rate - 1);
+    rig->rate = rate;
 }
 
 const char *brc_loading_end(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
     size_t n = rig->curve.table.n;
-    if (rig->strain >= rig->params.strain_max)
+    if (brc_loading_strain(rig) >= rig->params.strain_max)
         return "test.strain_max";
-    bool has_dropped = n > 0 && rig->params.stop_drop > 0 && rig->force_peak > 0 &&
-                       sim->events.table.n > 0 &&
-                       rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
-    return has_dropped ? "test.stop_drop" : NULL;
+    bool is_lost = n > (size_t)rig->stage_row && rig->params.stop_drop > 0 && rig->force_peak > 0 &&
+                   sim->events.table.n > 0 &&
+                   rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
+    return is_lost ? "test.stop_drop" : NULL;
 }
 
 /* Avalanches only lengthen the way, so what is told is a least number of steps, which falls
@@ -241,7 +285,7 @@ const char *brc_loading_end(const struct brc_sim *sim)
 double brc_loading_steps_left(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
-    double left = fmax(rig->params.strain_max - rig->strain, 0), rate = rig->rate;
+    double left = fmax(rig->params.strain_max - brc_loading_strain(rig), 0), rate = rig->rate;
     if (rig->n_platens == 0)
         return HUGE_VAL;
     if (rig->params.loading == BRC_LOADING_ADAPTIVE) {

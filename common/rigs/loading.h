@@ -17,7 +17,12 @@ double brc_loading_start_rate(const struct brc_test_params *test);
 /* One step at the present rate: the strain grows, the unbalanced ratio is measured now and then,
  * and the rate changes, with the mean velocities that go along with it. */
 void brc_loading_step(struct brc_sim *sim);
-/* "test.strain_max" or "test.stop_drop", when the test has come so far; NULL before. */
+/* Platen strain in the present stage, growing. Tests of one stage have no other. */
+double brc_loading_strain(const struct brc_rig *rig);
+/* The next stage begins, at the rate of a test's start: onset of damage, peak and strain are its
+ * own. sense: +1 where the platen strain grows in it, -1 where it falls. */
+void brc_loading_begin_stage(struct brc_sim *sim, double sense);
+/* "test.strain_max" or "test.stop_drop", when the present stage has come so far; NULL before. */
 const char *brc_loading_end(const struct brc_sim *sim);
 /* Steps until strain_max at the rate of the loading's present stage, for "time left, at most":
  * HUGE_VAL while adaptive loading has not met damage, as all hangs on where it begins, and without

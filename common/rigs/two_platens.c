@@ -48,8 +48,27 @@ static void set_velocities(struct brc_sim *sim)
                   rig->sense * 0.5 * rig->rate * rig->length[rig->axis]);
 }
 
-int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
-                          const struct brc_platen *like)
+void brc_two_platens_face(struct brc_sim *sim, int first, int axis, const struct brc_platen *like)
+{
+    struct brc_bodies *b = &sim->bodies;
+    double low[3], high[3];
+    brc_specimen_extent(sim->specimen, low, high);
+    for (int i = first; i < first + 2; i++) {
+        struct brc_platen *p = &sim->rig.platen[i];
+        *p = *like;
+        if (p->surface == BRC_SURFACE_PLANE)
+            p->half_width = HUGE_VAL;
+        p->body = (int32_t)b->n_grains + i;
+        p->n[axis] = i == first ? 1 : -1;
+        p->across[axis == 0] = 1;
+        for (int k = 0; k < 3; k++)
+            b->x[p->body][k] = 0.5 * (low[k] + high[k]);
+        b->x[p->body][axis] = i == first ? low[axis] : high[axis];
+        brc_copy(b->x0[p->body], b->x[p->body]);
+    }
+}
+
+void brc_two_platens_begin(struct brc_sim *sim, int axis, double sense, double section)
 {
     struct brc_rig *rig = &sim->rig;
     struct brc_bodies *b = &sim->bodies;
@@ -60,26 +79,20 @@ int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double se
     rig->section = section;
     for (int k = 0; k < 3; k++)
         rig->length[k] = high[k] - low[k];
-    for (int i = 0; i < rig->n_platens; i++) {
-        struct brc_platen *p = &rig->platen[i];
-        *p = *like;
-        if (p->surface == BRC_SURFACE_PLANE)
-            p->half_width = HUGE_VAL;
-        p->body = (int32_t)b->n_grains + i;
-        p->n[axis] = i == 0 ? 1 : -1;
-        p->across[0] = 1;
-        for (int k = 0; k < 3; k++)
-            b->x[p->body][k] = 0.5 * (low[k] + high[k]);
-        b->x[p->body][axis] = i == 0 ? low[axis] : high[axis];
-        brc_copy(b->x0[p->body], b->x[p->body]);
-    }
     brc_gauge_check(sim);
     rig->rate = rig->params.rate = brc_loading_start_rate(&rig->params);
-    set_velocities(sim);
     for (size_t i = 0; i < b->n_grains; i++) {
-        brc_two_platens_field(sim, i, b->v[i]);
+        rig->type->field(sim, i, b->v[i]);
         brc_copy(b->v_mean[i], b->v[i]);
     }
+}
+
+int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
+                          const struct brc_platen *like)
+{
+    brc_two_platens_face(sim, 0, axis, like);
+    brc_two_platens_begin(sim, axis, sense, section);
+    set_velocities(sim);
     return 0;
 }
 
@@ -93,22 +106,26 @@ void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3])
     v[k] = -rig->sense * rig->rate * (sim->bodies.x0[grain][k] - middle);
 }
 
-/* Mean of the platens' forces, in the sense of the test. They differ while the specimen
- * accelerates; curve and loading take the mean. */
-static void measure_load(struct brc_rig *rig)
+/* They differ while the specimen accelerates; curve and loading take the mean. */
+double brc_two_platens_force(const struct brc_rig *rig)
 {
     double mean = 0;
     for (int i = 0; i < rig->n_platens; i++)
         mean += rig->sense * rig->platen[i].force / rig->n_platens;
-    rig->force = mean;
-    rig->force_sum += mean;
-    rig->n_summed += 1;
+    return mean;
 }
 
 int brc_two_platens_drive(struct brc_sim *sim)
 {
+    return brc_two_platens_load(sim, brc_two_platens_force(&sim->rig));
+}
+
+int brc_two_platens_load(struct brc_sim *sim, double force)
+{
     struct brc_rig *rig = &sim->rig;
-    measure_load(rig);
+    rig->force = force;
+    rig->force_sum += force;
+    rig->n_summed += 1;
     if (rig->sense > 0 && rig->strain + rig->rate * sim->dt >= PLATENS_MEET)
         BRC_FAIL(sim->ctx, BRC_ERR_BLOWUP,
                  "the platens have met at step %lld, at a strain of %g: lower test.strain_max (now "

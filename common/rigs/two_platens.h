@@ -13,9 +13,17 @@
  * they approach. The load is divided by the section [m2]. */
 int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
                           const struct brc_platen *like);
+/* Parts of it: platens first and first + 1 at the ends along an axis; and lengths, gauge, starting
+ * rate and the grains' velocities of a test that is loaded along one. */
+void brc_two_platens_face(struct brc_sim *sim, int first, int axis, const struct brc_platen *like);
+void brc_two_platens_begin(struct brc_sim *sim, int axis, double sense, double section);
+/* Mean of the platens' forces now, in the sense of the test [N]. */
+double brc_two_platens_force(const struct brc_rig *rig);
 /* Strain and load of the step, then the rate and the velocities of the platens. Platens that meet
  * are an error. */
 int brc_two_platens_drive(struct brc_sim *sim);
+/* The same for a test whose load is a part of the platens' force [N]. */
+int brc_two_platens_load(struct brc_sim *sim, double force);
 /* The field of a uniform strain about the middle of the specimen. */
 void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3]);
 /* Operations for `check`: the keys of loading and moduli together, where a test uses them; closing:

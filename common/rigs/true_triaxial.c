@@ -1,0 +1,462 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* True triaxial test: a box between six platens. Those along z are driven by the loading; those
+ * along x and y are held, or pushed by a force that follows a rule (stress_path.h), so that no
+ * stage needs a target in time: where the specimen softens, all axes wait for it together.
+ *
+ * Stresses are true ones, over the area now, and strains are of the platens; load and stress of the
+ * curve are the deviator sigma_z - (sigma_x + sigma_y) / 2, by which moduli, peak and end are told.
+ */
+#include "common/engine/sim.h"
+#include "common/geometry/vec.h"
+#include "common/rigs/elastic_moduli.h"
+#include "common/rigs/servo.h"
+#include "common/rigs/stress_path.h"
+#include "common/rigs/two_platens.h"
+
+#include <gsl/gsl_multifit.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TRUE_TRIAXIAL_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                       \
+    TEXT(stages, "isotropic to 10 MPa, p constant to strain 0.02",                             \
+         "path of the test: isotropic, p constant, lateral constant, plane strain, uniaxial "  \
+         "strain, lode ANGLE, ratio X Y, each 'to strain E' or 'to STRESS'; or stress X Y Z")  \
+    CHOICE(bonds, "off|normal", "off",                                                         \
+           "normal: grains on the platens are bonded to them, without end, along the normal; " \
+           "off: a platen cannot pull")
+
+struct true_triaxial_params {
+    BRC_PARAM_MEMBERS(TRUE_TRIAXIAL_PARAMS)
+};
+#define BRC_OWNER struct true_triaxial_params
+static const struct brc_param true_triaxial_params[] = {BRC_PARAM_LIST(TRUE_TRIAXIAL_PARAMS)};
+#undef BRC_OWNER
+
+/* x, y, z throughout */
+#define STATE(SCALAR, VECTOR)                                                           \
+    VECTOR(double, mass, 2, BRC_STATE, "kg", "of the platens along x, y")               \
+    VECTOR(double, constant, 2, BRC_STATE, "Pa", "laws of the stage: sigma = constant") \
+    VECTOR(double, part, 2, BRC_STATE, "1", "+ part sigma_z")                           \
+    VECTOR(double, held, 2, BRC_STATE, "1", "1: the axis does not move")                \
+    VECTOR(double, sum, 3, BRC_STATE, "Pa", "stresses, summed since the last row")      \
+    VECTOR(double, asked, 2, BRC_STATE, "Pa", "stresses asked for, summed since then")  \
+    SCALAR(double, largest, BRC_STATE, "Pa", "largest stress of a row so far")          \
+    SCALAR(int64_t, is_over, BRC_STATE, "1", "1: the last stage has ended")
+#define BRC_OWNER struct state
+struct state {
+    STATE(BRC_COLUMN, BRC_COLUMN3)
+};
+static const struct brc_field state_fields[] = {STATE(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+#define COLUMNS(SCALAR, VECTOR)                                                                    \
+    SCALAR(int64_t, stage, BRC_STATE, "1", "stage, from 1")                                        \
+    SCALAR(double, sigma_x, BRC_STATE, "Pa", "stress along x")                                     \
+    SCALAR(double, sigma_y, BRC_STATE, "Pa", "along y")                                            \
+    SCALAR(double, sigma_z, BRC_STATE, "Pa", "along z")                                            \
+    SCALAR(double, p, BRC_STATE, "Pa", "mean stress")                                              \
+    SCALAR(double, q, BRC_STATE, "Pa", "deviatoric stress")                                        \
+    SCALAR(double, lode, BRC_STATE, "rad", "Lode angle: 0 in triaxial compression")                \
+    SCALAR(double, eps_x, BRC_STATE, "1", "strain of the platens along x, compression +")          \
+    SCALAR(double, eps_y, BRC_STATE, "1", "along y")                                               \
+    SCALAR(double, eps_z, BRC_STATE, "1", "along z")                                               \
+    SCALAR(double, eps_v, BRC_STATE, "1", "volume strain")                                         \
+    SCALAR(double, eps_d, BRC_STATE, "1", "deviatoric strain, conjugate to q")                     \
+    SCALAR(double, eps_d_printed, BRC_STATE, "1",                                                  \
+           "the same as eq 23 of gt12 has it: sqrt(3) of it")                                      \
+    SCALAR(double, missed, BRC_STATE, "1",                                                         \
+           "largest difference of a stress asked for from its mean over the row, over the larger " \
+           "of it and 1 % of the largest stress")
+#define BRC_OWNER struct columns
+struct columns {
+    COLUMNS(BRC_COLUMN, BRC_COLUMN3)
+};
+static const struct brc_field columns_fields[] = {COLUMNS(BRC_FIELD, BRC_FIELD3)};
+#undef BRC_OWNER
+
+/* What the case has asked for. */
+struct plan {
+    struct brc_stage stage[BRC_MAX_STAGES];
+    int n;
+};
+
+enum { X, Y, Z };
+/* first platen of the pair along each axis: those of z come first, as in other tests */
+static const int pair_of[3] = {2, 4, 0};
+
+static const struct brc_stage *stage_now(const struct brc_sim *sim)
+{
+    const struct plan *plan = sim->rig.memory;
+    return &plan->stage[sim->rig.stage];
+}
+
+/* --- beginning ---------------------------------------------------------------------------------
+ */
+
+static int check(struct brc_context *ctx, const struct brc_test_params *t, const void *own)
+{
+    const struct true_triaxial_params *params = own;
+    struct plan plan;
+    BRC_TRY(brc_stages_read(ctx, params->stages, plan.stage, &plan.n));
+    return brc_two_platens_check(ctx, t, own);
+}
+
+/* Six platens close a box alone: a side that lies on none would be free, and its stress nobody's.
+ */
+static int check_box(struct brc_sim *sim)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    struct brc_facing *facing;
+    size_t n, on = 0, boundary = 0;
+    BRC_TRY(brc_platens_facing(sim, &facing, &n));
+    for (size_t i = 0; i < n; i++)
+        on += facing[i].is_on;
+    free(facing);
+    for (size_t i = 0; i < f->n_facets; i++)
+        boundary += f->cell[i][1] < 0;
+    if (on == boundary)
+        return 0;
+    BRC_FAIL(
+        sim->ctx, BRC_ERR_INPUT,
+        "true_triaxial needs a box along the axes: %zu of %zu facets of the specimen's surface "
+        "lie on none of the six platens; use specimen.shape: box, or another test",
+        boundary - on, boundary);
+}
+
+static void set_laws(struct brc_sim *sim, const double sigma[3])
+{
+    struct state *s = sim->rig.own_scalars;
+    struct brc_axis_law law[2];
+    brc_stage_laws(stage_now(sim), sigma, law);
+    for (int k = 0; k < 2; k++) {
+        s->constant[0][k] = law[k].constant;
+        s->part[0][k] = law[k].part;
+        s->held[0][k] = law[k].is_held;
+    }
+}
+
+/* A stage by strain has the start of a test of that strain. */
+static void set_strain_max(struct brc_rig *rig, const struct brc_stage *stage)
+{
+    if (stage->is_to_strain)
+        rig->params.strain_max = fabs(stage->to);
+}
+
+/* An axis moves along with z, by the same strain, where the stage has all stresses grow together.
+ */
+static bool moves_along(const struct brc_sim *sim, int k)
+{
+    const struct state *s = sim->rig.own_scalars;
+    return s->part[0][k] > 0 && !s->held[0][k];
+}
+
+static void set_speed(struct brc_sim *sim, int axis, double speed)
+{
+    for (int i = pair_of[axis]; i < pair_of[axis] + 2; i++) {
+        const struct brc_platen *p = &sim->rig.platen[i];
+        brc_scale(sim->bodies.v[p->body], p->n, speed);
+    }
+}
+
+static double driven_speed(const struct brc_rig *rig, int axis)
+{
+    return 0.5 * rig->stage_sense * rig->rate * rig->length[axis];
+}
+
+static int place(struct brc_sim *sim)
+{
+    static const double nothing[3] = {0, 0, 0};
+    struct brc_rig *rig = &sim->rig;
+    const struct true_triaxial_params *params = rig->own;
+    const struct brc_platen like = {.friction = rig->params.friction,
+                                    .bonding =
+                                        params->bonds ? BRC_BONDING_NORMAL : BRC_BONDING_NONE};
+    struct plan *plan = rig->memory = brc_alloc(sim->ctx, 1, sizeof *plan);
+    if (!plan)
+        return BRC_ERR_MEMORY;
+    BRC_TRY(brc_stages_read(sim->ctx, params->stages, plan->stage, &plan->n));
+    set_strain_max(rig, stage_now(sim));
+    set_laws(sim, nothing);
+    rig->stage_sense = brc_stage_sense(stage_now(sim), nothing);
+    for (int k = 0; k < 3; k++)
+        brc_two_platens_face(sim, pair_of[k], k, &like);
+    brc_two_platens_begin(sim, Z, 1, brc_two_platens_section(sim, Z));
+    BRC_TRY(check_box(sim));
+    for (int k = 0; k < 3; k++)
+        set_speed(sim, k, k == Z || moves_along(sim, k) ? driven_speed(rig, k) : 0);
+    return 0;
+}
+
+static void field(const struct brc_sim *sim, size_t grain, double v[3])
+{
+    const struct brc_rig *rig = &sim->rig;
+    brc_set(v, 0, 0, 0);
+    for (int k = 0; k < 3; k++)
+        if (k == Z || moves_along(sim, k)) {
+            const struct brc_platen *p = &rig->platen[pair_of[k]];
+            double middle = sim->bodies.x0[p->body][k] + 0.5 * rig->length[k];
+            v[k] = -rig->stage_sense * rig->rate * (sim->bodies.x0[grain][k] - middle);
+        }
+}
+
+/* --- a step ------------------------------------------------------------------------------------
+ */
+
+static double length_now(const struct brc_sim *sim, int axis)
+{
+    const struct brc_platen *p = &sim->rig.platen[pair_of[axis]];
+    return sim->bodies.x[p[1].body][axis] - sim->bodies.x[p[0].body][axis];
+}
+
+static double area_now(const struct brc_sim *sim, int axis)
+{
+    return length_now(sim, (axis + 1) % 3) * length_now(sim, (axis + 2) % 3);
+}
+
+static double stress_now(const struct brc_sim *sim, int axis)
+{
+    const struct brc_platen *p = &sim->rig.platen[pair_of[axis]];
+    return 0.5 * (p[0].force + p[1].force) / area_now(sim, axis);
+}
+
+/* Platens without bonds cannot pull; rounding about a free face is none. */
+static int check_tension(struct brc_sim *sim, int axis, double asked)
+{
+    const struct true_triaxial_params *params = sim->rig.own;
+    const struct state *s = sim->rig.own_scalars;
+    if (params->bonds || asked >= -0.01 * s->largest[0])
+        return 0;
+    BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
+             "true_triaxial, stage %lld: sigma_%c would have to be %.3g MPa, and platens without "
+             "bonds cannot pull (a constant p needs q <= 3 p): end the stage before, raise the "
+             "confinement, or use true_triaxial.bonds: normal",
+             (long long)sim->rig.stage + 1, "xyz"[axis], 1e-6 * asked);
+}
+
+static int drive_axis(struct brc_sim *sim, int axis, double sigma_z)
+{
+    struct state *s = sim->rig.own_scalars;
+    if (s->held[0][axis]) {
+        set_speed(sim, axis, 0);
+        return 0;
+    }
+    double asked = s->constant[0][axis] + s->part[0][axis] * sigma_z;
+    s->asked[0][axis] += asked;
+    BRC_TRY(check_tension(sim, axis, asked));
+    brc_servo_push(sim, pair_of[axis], asked * area_now(sim, axis), &s->mass[0][axis]);
+    return 0;
+}
+
+static void next_stage(struct brc_sim *sim, const double sigma[3])
+{
+    struct brc_rig *rig = &sim->rig;
+    struct plan *plan = rig->memory;
+    struct state *s = rig->own_scalars;
+    if (rig->stage + 1 == plan->n) {
+        s->is_over[0] = 1;
+        return;
+    }
+    double sense = brc_stage_sense(stage_now(sim) + 1, sigma);
+    brc_loading_begin_stage(sim, sense);
+    set_strain_max(rig, stage_now(sim));
+    set_laws(sim, sigma);
+}
+
+static int drive(struct brc_sim *sim)
+{
+    struct brc_rig *rig = &sim->rig;
+    struct state *s = rig->own_scalars;
+    double sigma[3];
+    for (int k = 0; k < 3; k++) {
+        sigma[k] = stress_now(sim, k);
+        s->sum[0][k] += sigma[k];
+    }
+    if (brc_stage_is_over(stage_now(sim), rig->stage_sense, brc_loading_strain(rig), sigma))
+        next_stage(sim, sigma);
+    for (int k = 0; k < 2; k++)
+        BRC_TRY(drive_axis(sim, k, sigma[Z]));
+    BRC_TRY(brc_two_platens_load(sim, (sigma[Z] - 0.5 * (sigma[X] + sigma[Y])) * rig->section));
+    set_speed(sim, Z, driven_speed(rig, Z));
+    return 0;
+}
+
+static const char *end(const struct brc_sim *sim)
+{
+    const struct state *s = sim->rig.own_scalars;
+    const struct plan *plan = sim->rig.memory;
+    if (s->is_over[0])
+        return "true_triaxial.stages";
+    return sim->rig.stage + 1 == plan->n && stage_now(sim)->is_to_strain ? brc_loading_end(sim)
+                                                                         : NULL;
+}
+
+static void restore(struct brc_sim *sim)
+{
+    set_strain_max(&sim->rig, stage_now(sim));
+}
+
+/* --- rows and results --------------------------------------------------------------------------
+ */
+
+/* What the servo has missed over a row, where one was at work. */
+static double missed(const struct state *s, const double sigma[3], double steps)
+{
+    double worst = 0;
+    for (int k = 0; k < 2; k++) {
+        double asked = s->asked[0][k] / steps, scale = fmax(fabs(asked), 0.01 * s->largest[0]);
+        if (!s->held[0][k] && scale > 0)
+            worst = fmax(worst, fabs(sigma[k] - asked) / scale);
+    }
+    return worst;
+}
+
+static void fill_row(struct brc_sim *sim, size_t row, double steps)
+{
+    struct columns *c = sim->rig.curve.own_columns;
+    struct state *s = sim->rig.own_scalars;
+    double sigma[3], eps[3];
+    for (int k = 0; k < 3; k++) {
+        sigma[k] = s->sum[0][k] / steps;
+        eps[k] = 1 - length_now(sim, k) / sim->rig.length[k];
+        s->largest[0] = fmax(s->largest[0], fabs(sigma[k]));
+    }
+    c->stage[row] = sim->rig.stage + 1;
+    c->sigma_x[row] = sigma[X];
+    c->sigma_y[row] = sigma[Y];
+    c->sigma_z[row] = sigma[Z];
+    c->p[row] = brc_mean_stress(sigma);
+    c->q[row] = brc_deviatoric_stress(sigma);
+    c->lode[row] = brc_lode_angle(sigma);
+    c->eps_x[row] = eps[X];
+    c->eps_y[row] = eps[Y];
+    c->eps_z[row] = eps[Z];
+    c->eps_v[row] = brc_volume_strain(eps);
+    c->eps_d[row] = brc_deviatoric_strain(eps);
+    c->eps_d_printed[row] = sqrt(3) * c->eps_d[row];
+    c->missed[row] = missed(s, sigma, steps);
+}
+
+static int measure(struct brc_sim *sim)
+{
+    struct state *s = sim->rig.own_scalars;
+    size_t row = sim->rig.curve.table.n;
+    double steps = (double)sim->rig.n_summed;
+    BRC_TRY(brc_curve_sample(sim));
+    if (sim->rig.curve.table.n == row)
+        return 0;
+    fill_row(sim, row, steps);
+    memset(s->sum[0], 0, sizeof s->sum[0]);
+    memset(s->asked[0], 0, sizeof s->asked[0]);
+    return 0;
+}
+
+static const struct brc_quantity quantities[] = {
+    {"E", "Pa", "Young's modulus: Hooke's law, least squares over stresses and gauge strains"},
+    {"nu", "1", "Poisson's ratio, likewise"},
+    {"strength", "Pa", "largest sigma_z - (sigma_x + sigma_y) / 2, once it has fallen from it"},
+    {"strain_at_peak", "1", "strain along z there, since the stage began"},
+    {"p_at_peak", "Pa", "mean stress there"},
+    {"q_at_peak", "Pa", "deviatoric stress there"},
+    {"lode_at_peak", "rad", "Lode angle there"},
+    {"q_residual", "Pa", "mean deviatoric stress of the last quarter of the last stage's rows"},
+    {"servo_missed", "1", "largest `missed` of the rows: see the columns of the curve"}};
+enum { N_QUANTITIES = sizeof quantities / sizeof quantities[0] };
+
+static const char no_rows[] = "fewer than 3 rows of the curve from test.modulus_low to "
+                              "test.modulus_high: lower test.sample_steps or load more slowly",
+                  no_gauge[] = "fewer than 4 grains in the gauge, or all close to one place along "
+                               "an axis";
+
+/* eps_z and eps_x + eps_y of each row by Hooke's law with two unknown compliances, 1/E and -nu/E,
+ * and two constants, as a row has what came before it in both. */
+static void fit_hooke(const struct brc_rig *rig, size_t first, size_t n, double *e, double *nu)
+{
+    const struct brc_curve *c = &rig->curve;
+    const struct columns *own = c->own_columns;
+    gsl_matrix *a = gsl_matrix_calloc(2 * n, 4), *cov = gsl_matrix_alloc(4, 4);
+    gsl_vector *y = gsl_vector_alloc(2 * n), *x = gsl_vector_alloc(4);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(2 * n, 4);
+    double chi2, unit = rig->force_peak / rig->section; /* columns of like size */
+    for (size_t i = 0; i < n; i++) {
+        size_t row = first + i;
+        double z = own->sigma_z[row] / unit,
+               across = (own->sigma_x[row] + own->sigma_y[row]) / unit;
+        gsl_matrix_set(a, 2 * i, 0, z);
+        gsl_matrix_set(a, 2 * i, 1, across);
+        gsl_matrix_set(a, 2 * i, 2, 1);
+        gsl_vector_set(y, 2 * i, c->strain_axial[row]);
+        gsl_matrix_set(a, 2 * i + 1, 0, across);
+        gsl_matrix_set(a, 2 * i + 1, 1, 2 * z + across);
+        gsl_matrix_set(a, 2 * i + 1, 3, 1);
+        gsl_vector_set(y, 2 * i + 1, 2 * c->strain_lateral[row]);
+    }
+    gsl_multifit_linear(a, y, x, cov, &chi2, work);
+    *e = unit / gsl_vector_get(x, 0);
+    *nu = -gsl_vector_get(x, 1) / gsl_vector_get(x, 0);
+    gsl_multifit_linear_free(work);
+    gsl_matrix_free(a);
+    gsl_matrix_free(cov);
+    gsl_vector_free(y);
+    gsl_vector_free(x);
+}
+
+static void moduli(const struct brc_sim *sim, struct brc_measured out[2])
+{
+    const struct brc_rig *rig = &sim->rig;
+    const char *note = brc_curve_why_no_peak(rig);
+    size_t first = 0, end = 0;
+    if (note == NULL || note == brc_curve_no_peak) {
+        brc_moduli_rows(rig, &first, &end);
+        note = end < first + 3                                                  ? no_rows
+               : !(rig->has_gauge[0] && rig->has_gauge[1] && rig->has_gauge[2]) ? no_gauge
+                                                                                : NULL;
+    }
+    double e = NAN, nu = NAN;
+    if (!note)
+        fit_hooke(rig, first, end - first, &e, &nu);
+    out[0] = (struct brc_measured){e, note};
+    out[1] = (struct brc_measured){nu, note};
+}
+
+static void results(const struct brc_sim *sim, struct brc_measured *out)
+{
+    const struct brc_rig *rig = &sim->rig;
+    const struct columns *c = rig->curve.own_columns;
+    const char *note = brc_curve_why_no_peak(rig);
+    size_t n = rig->curve.table.n, peak = brc_curve_peak_row(rig),
+           rest = n - (n - (size_t)rig->stage_row) / 4;
+    moduli(sim, out);
+    const double at_peak[] = {rig->force_peak / rig->section, rig->strain_peak - rig->stage_strain,
+                              note ? 0 : c->p[peak], note ? 0 : c->q[peak],
+                              note ? 0 : c->lode[peak]};
+    for (int i = 0; i < 5; i++)
+        out[2 + i] = (struct brc_measured){note ? NAN : at_peak[i], note};
+    double q = 0, worst = 0;
+    for (size_t i = rest; i < n; i++)
+        q += c->q[i] / (double)(n - rest);
+    for (size_t i = 0; i < n; i++)
+        worst = fmax(worst, c->missed[i]);
+    const char *none = rest < n ? NULL : "fewer than 4 rows of the curve in the last stage";
+    out[7] = (struct brc_measured){none ? NAN : q, none};
+    out[8] = (struct brc_measured){worst, NULL};
+}
+
+const struct brc_rig_type brc_rig_true_triaxial = {
+    .name = "true_triaxial",
+    .meaning = "a box between six platens, along a path of stresses and strains",
+    .keys = BRC_LOADING_KEYS BRC_CURVE_KEYS BRC_MODULI_KEYS "friction",
+    .params = BRC_PARAMS(true_triaxial_params, struct true_triaxial_params),
+    .state = BRC_FIELDSET(state_fields, struct state),
+    .columns = BRC_FIELDSET(columns_fields, struct columns),
+    .quantities = quantities,
+    .n_quantities = N_QUANTITIES,
+    .n_platens = 6,
+    .check = check,
+    .place = place,
+    .drive = drive,
+    .measure = measure,
+    .results = results,
+    .field = field,
+    .end = end,
+    .restore = restore,
+    .free = free};
