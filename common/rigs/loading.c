@@ -268,16 +268,20 @@ void brc_loading_begin_stage(struct brc_sim *sim, double sense)
     rig->rate = rate;
 }
 
-const char *brc_loading_end(const struct brc_sim *sim)
+bool brc_loading_fallen(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
     size_t n = rig->curve.table.n;
-    if (brc_loading_strain(rig) >= rig->params.strain_max)
+    return n > (size_t)rig->stage_row && rig->params.stop_drop > 0 && rig->force_peak > 0 &&
+           sim->events.table.n > 0 &&
+           rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
+}
+
+const char *brc_loading_end(const struct brc_sim *sim)
+{
+    if (brc_loading_strain(&sim->rig) >= sim->rig.params.strain_max)
         return "test.strain_max";
-    bool is_lost = n > (size_t)rig->stage_row && rig->params.stop_drop > 0 && rig->force_peak > 0 &&
-                   sim->events.table.n > 0 &&
-                   rig->curve.force[n - 1] < rig->params.stop_drop * rig->force_peak;
-    return is_lost ? "test.stop_drop" : NULL;
+    return brc_loading_fallen(sim) ? "test.stop_drop" : NULL;
 }
 
 /* Avalanches only lengthen the way, so what is told is a least number of steps, which falls

@@ -22,6 +22,8 @@ double brc_loading_strain(const struct brc_rig *rig);
 /* The next stage begins, at the rate of a test's start: onset of damage, peak and strain are its
  * own. sense: +1 where the platen strain grows in it, -1 where it falls. */
 void brc_loading_begin_stage(struct brc_sim *sim, double sense);
+/* The load has fallen to stop_drop of the stage's peak. */
+bool brc_loading_fallen(const struct brc_sim *sim);
 /* "test.strain_max" or "test.stop_drop", when the present stage has come so far; NULL before. */
 const char *brc_loading_end(const struct brc_sim *sim);
 /* Steps until strain_max at the rate of the loading's present stage, for "time left, at most":

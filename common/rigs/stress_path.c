@@ -214,6 +214,17 @@ bool brc_stage_is_over(const struct brc_stage *stage, double sense, double strai
     return sense * (measure_of_end(stage, sigma) - stage->to) >= 0;
 }
 
+void brc_stage_reaches(const struct brc_stage *stage, const double now[3], double sigma[3])
+{
+    brc_copy(sigma, now);
+    if (stage->is_to_strain)
+        return;
+    if (stage->kind == BRC_PATH_ISOTROPIC)
+        brc_set(sigma, stage->to, stage->to, stage->to);
+    if (stage->kind == BRC_PATH_STRESS)
+        brc_copy(sigma, stage->value);
+}
+
 /* --- invariants --------------------------------------------------------------------------------
  */
 

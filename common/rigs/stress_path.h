@@ -46,6 +46,9 @@ double brc_stage_sense(const struct brc_stage *stage, const double sigma[3]);
 bool brc_stage_is_over(const struct brc_stage *stage, double sense, double strain,
                        const double sigma[3]);
 
+/* Stresses that a stage ends at: those that it names, else those now. */
+void brc_stage_reaches(const struct brc_stage *stage, const double now[3], double sigma[3]);
+
 /* Invariants, compression positive. */
 double brc_mean_stress(const double sigma[3]);       /* eq 20 of gt12 */
 double brc_deviatoric_stress(const double sigma[3]); /* eq 21 of gt12 */

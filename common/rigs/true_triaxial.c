@@ -13,7 +13,7 @@
 #include "common/rigs/stress_path.h"
 #include "common/rigs/two_platens.h"
 
-#include <gsl/gsl_multifit.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -247,7 +247,9 @@ static int drive_axis(struct brc_sim *sim, int axis, double sigma_z)
     return 0;
 }
 
-static void next_stage(struct brc_sim *sim, const double sigma[3])
+/* The laws of a stage begin from what the stage before was to reach, or what was reached where it
+ * ended by strain: a p of 110 MPa is then 110 MPa, and not a step more. */
+static void next_stage(struct brc_sim *sim, const double reached[3])
 {
     struct brc_rig *rig = &sim->rig;
     struct plan *plan = rig->memory;
@@ -256,8 +258,9 @@ static void next_stage(struct brc_sim *sim, const double sigma[3])
         s->is_over[0] = 1;
         return;
     }
-    double sense = brc_stage_sense(stage_now(sim) + 1, sigma);
-    brc_loading_begin_stage(sim, sense);
+    double sigma[3];
+    brc_stage_reaches(stage_now(sim), reached, sigma);
+    brc_loading_begin_stage(sim, brc_stage_sense(stage_now(sim) + 1, sigma));
     set_strain_max(rig, stage_now(sim));
     set_laws(sim, sigma);
 }
@@ -284,10 +287,11 @@ static const char *end(const struct brc_sim *sim)
 {
     const struct state *s = sim->rig.own_scalars;
     const struct plan *plan = sim->rig.memory;
-    if (s->is_over[0])
-        return "true_triaxial.stages";
-    return sim->rig.stage + 1 == plan->n && stage_now(sim)->is_to_strain ? brc_loading_end(sim)
-                                                                         : NULL;
+    if (sim->rig.stage + 1 < plan->n)
+        return NULL;
+    bool is_over = s->is_over[0] || (stage_now(sim)->is_to_strain &&
+                                     brc_loading_strain(&sim->rig) >= fabs(stage_now(sim)->to));
+    return is_over ? "true_triaxial.stages" : brc_loading_fallen(sim) ? "test.stop_drop" : NULL;
 }
 
 static void restore(struct brc_sim *sim)
@@ -351,8 +355,9 @@ static int measure(struct brc_sim *sim)
 }
 
 static const struct brc_quantity quantities[] = {
-    {"E", "Pa", "Young's modulus: Hooke's law, least squares over stresses and gauge strains"},
+    {"E", "Pa", "Young's modulus, from G and the bulk modulus by stresses and gauge strains"},
     {"nu", "1", "Poisson's ratio, likewise"},
+    {"G", "Pa", "shear modulus by deviators of stress and gauge strain"},
     {"strength", "Pa", "largest sigma_z - (sigma_x + sigma_y) / 2, once it has fallen from it"},
     {"strain_at_peak", "1", "strain along z there, since the stage began"},
     {"p_at_peak", "Pa", "mean stress there"},
@@ -365,57 +370,67 @@ enum { N_QUANTITIES = sizeof quantities / sizeof quantities[0] };
 static const char no_rows[] = "fewer than 3 rows of the curve from test.modulus_low to "
                               "test.modulus_high: lower test.sample_steps or load more slowly",
                   no_gauge[] = "fewer than 4 grains in the gauge, or all close to one place along "
-                               "an axis";
+                               "an axis",
+                  no_pressure[] = "the mean stress stays, so that G alone can be told";
 
-/* eps_z and eps_x + eps_y of each row by Hooke's law with two unknown compliances, 1/E and -nu/E,
- * and two constants, as a row has what came before it in both. */
-static void fit_hooke(const struct brc_rig *rig, size_t first, size_t n, double *e, double *nu)
+/* Change of the mean stress, over that of the deviator, from which K is worth something. */
+static const double P_CHANGES = 0.05;
+
+/* One row's deviators or means of stress [0] and gauge strain [1]. */
+static void shear_pair(const struct brc_rig *rig, size_t row, double pair[2])
 {
     const struct brc_curve *c = &rig->curve;
-    const struct columns *own = c->own_columns;
-    gsl_matrix *a = gsl_matrix_calloc(2 * n, 4), *cov = gsl_matrix_alloc(4, 4);
-    gsl_vector *y = gsl_vector_alloc(2 * n), *x = gsl_vector_alloc(4);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(2 * n, 4);
-    double chi2, unit = rig->force_peak / rig->section; /* columns of like size */
-    for (size_t i = 0; i < n; i++) {
-        size_t row = first + i;
-        double z = own->sigma_z[row] / unit,
-               across = (own->sigma_x[row] + own->sigma_y[row]) / unit;
-        gsl_matrix_set(a, 2 * i, 0, z);
-        gsl_matrix_set(a, 2 * i, 1, across);
-        gsl_matrix_set(a, 2 * i, 2, 1);
-        gsl_vector_set(y, 2 * i, c->strain_axial[row]);
-        gsl_matrix_set(a, 2 * i + 1, 0, across);
-        gsl_matrix_set(a, 2 * i + 1, 1, 2 * z + across);
-        gsl_matrix_set(a, 2 * i + 1, 3, 1);
-        gsl_vector_set(y, 2 * i + 1, 2 * c->strain_lateral[row]);
-    }
-    gsl_multifit_linear(a, y, x, cov, &chi2, work);
-    *e = unit / gsl_vector_get(x, 0);
-    *nu = -gsl_vector_get(x, 1) / gsl_vector_get(x, 0);
-    gsl_multifit_linear_free(work);
-    gsl_matrix_free(a);
-    gsl_matrix_free(cov);
-    gsl_vector_free(y);
-    gsl_vector_free(x);
+    pair[0] = c->stress[row];
+    pair[1] = c->strain_axial[row] - c->strain_lateral[row];
 }
 
-static void moduli(const struct brc_sim *sim, struct brc_measured out[2])
+static void bulk_pair(const struct brc_rig *rig, size_t row, double pair[2])
+{
+    const struct brc_curve *c = &rig->curve;
+    pair[0] = ((const struct columns *)c->own_columns)->p[row];
+    pair[1] = c->strain_axial[row] + 2 * c->strain_lateral[row];
+}
+
+/* Slope of stress by strain over rows, and by how much the stress varies (root mean square). */
+static double slope(const struct brc_rig *rig, size_t first, size_t end,
+                    void (*pair_of_row)(const struct brc_rig *, size_t, double[2]), double *varies)
+{
+    double mean[2] = {0, 0}, both = 0, strain = 0, stress = 0, pair[2], n = (double)(end - first);
+    for (size_t i = first; i < end; i++) {
+        pair_of_row(rig, i, pair);
+        mean[0] += pair[0] / n;
+        mean[1] += pair[1] / n;
+    }
+    for (size_t i = first; i < end; i++) {
+        pair_of_row(rig, i, pair);
+        both += (pair[0] - mean[0]) * (pair[1] - mean[1]);
+        strain += (pair[1] - mean[1]) * (pair[1] - mean[1]);
+        stress += (pair[0] - mean[0]) * (pair[0] - mean[0]);
+    }
+    *varies = sqrt(stress / n);
+    return both / strain;
+}
+
+/* G by deviators, K by means: with both, E and nu do not hang on which stresses the path keeps. */
+static void moduli(const struct brc_sim *sim, struct brc_measured out[3])
 {
     const struct brc_rig *rig = &sim->rig;
     const char *note = brc_curve_why_no_peak(rig);
     size_t first = 0, end = 0;
+    double g = NAN, k = NAN, shears = 0, presses = 0;
     if (note == NULL || note == brc_curve_no_peak) {
+        bool is_gauged = rig->has_gauge[0] && rig->has_gauge[1] && rig->has_gauge[2];
         brc_moduli_rows(rig, &first, &end);
-        note = end < first + 3                                                  ? no_rows
-               : !(rig->has_gauge[0] && rig->has_gauge[1] && rig->has_gauge[2]) ? no_gauge
-                                                                                : NULL;
+        note = end < first + 3 ? no_rows : is_gauged ? NULL : no_gauge;
     }
-    double e = NAN, nu = NAN;
-    if (!note)
-        fit_hooke(rig, first, end - first, &e, &nu);
-    out[0] = (struct brc_measured){e, note};
-    out[1] = (struct brc_measured){nu, note};
+    if (!note) {
+        g = slope(rig, first, end, shear_pair, &shears) / 2;
+        k = slope(rig, first, end, bulk_pair, &presses);
+    }
+    const char *both = note ? note : presses > P_CHANGES * shears ? NULL : no_pressure;
+    out[0] = (struct brc_measured){both ? NAN : 9 * k * g / (3 * k + g), both};
+    out[1] = (struct brc_measured){both ? NAN : (3 * k - 2 * g) / (6 * k + 2 * g), both};
+    out[2] = (struct brc_measured){g, note};
 }
 
 static void results(const struct brc_sim *sim, struct brc_measured *out)
@@ -430,15 +445,15 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
                               note ? 0 : c->p[peak], note ? 0 : c->q[peak],
                               note ? 0 : c->lode[peak]};
     for (int i = 0; i < 5; i++)
-        out[2 + i] = (struct brc_measured){note ? NAN : at_peak[i], note};
+        out[3 + i] = (struct brc_measured){note ? NAN : at_peak[i], note};
     double q = 0, worst = 0;
     for (size_t i = rest; i < n; i++)
         q += c->q[i] / (double)(n - rest);
     for (size_t i = 0; i < n; i++)
         worst = fmax(worst, c->missed[i]);
     const char *none = rest < n ? NULL : "fewer than 4 rows of the curve in the last stage";
-    out[7] = (struct brc_measured){none ? NAN : q, none};
-    out[8] = (struct brc_measured){worst, NULL};
+    out[8] = (struct brc_measured){none ? NAN : q, none};
+    out[9] = (struct brc_measured){worst, NULL};
 }
 
 const struct brc_rig_type brc_rig_true_triaxial = {
