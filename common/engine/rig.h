@@ -45,6 +45,9 @@ enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
     REAL(modulus_low, "1", "0.05", "[0, 1)", "moduli: least squares from this part of the peak", \
          "kind=*")                                                                               \
     REAL(modulus_high, "1", "0.15", "(0, 1]", "moduli: up to this part of the peak", "kind=*")   \
+    REAL(plateau, "1", "0.005", "[0, 1)",                                                        \
+         "a load that stays within 1 % over this strain counts as a peak passed; 0: never",      \
+         "kind=*")                                                                               \
     INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")
 
 struct brc_test_params {

@@ -11,12 +11,30 @@
 
 static const char no_row[] = "no row of the curve: fewer steps than test.sample_steps",
                   no_load[] = "no load in the sense of the test",
+                  plateau[] = "the load stays within 1 % over test.plateau of strain: a plateau",
                   no_break[] = "nothing had broken at the peak";
 const char brc_curve_no_peak[] =
     "no peak: the load was still rising, or above 0.95 of the largest, at the end";
 /* A largest load is a peak once the load has been below this part of it: a run that ends on the way
  * up has no strength, and a result that says otherwise would be too low without a sign of it. */
 static const double FALLEN = 0.95;
+/* or once it has stayed within this part of itself over test.plateau of strain */
+static const double FLAT = 0.01;
+
+/* A gauge strain is `now`, while stress and strain of row i are means over its steps: in fast
+ * loading that would set them apart by percents. So it is taken where the platen strain had its
+ * mean: on the line from the start, or in later stages, where it may go another way, on that from
+ * the last row.
+ */
+static double at_mean(const struct brc_rig *rig, size_t i, const double *column, double now)
+{
+    const double *strain = rig->curve.strain;
+    if (rig->stage == 0 || i == 0)
+        return (rig->strain > 0 ? strain[i] / rig->strain : 1) * now;
+    double way = rig->strain - strain[i - 1];
+    double part = way != 0 ? (strain[i] - strain[i - 1]) / way : 1;
+    return column[i - 1] + part * (now - column[i - 1]);
+}
 
 static int add_row(struct brc_sim *sim)
 {
@@ -29,15 +47,14 @@ static int add_row(struct brc_sim *sim)
     double stored = l->bond + l->contact_normal + l->contact_shear;
     c->step[i] = sim->step;
     c->time[i] = sim->time;
-    /* over the same steps: a fast rate would set them apart */
     double steps = (double)rig->n_summed, mean = rig->n_summed > 0 ? rig->strain_sum / steps : 0;
-    double part = rig->strain > 0 ? mean / rig->strain : 1;
     c->strain[i] = mean;
     c->force[i] = rig->n_summed > 0 ? rig->force_sum / steps : 0;
     c->stress[i] = c->force[i] / rig->section;
-    c->strain_axial[i] = part * rig->sense * brc_gauge_strain(sim, rig->axis);
-    c->strain_lateral[i] = part * rig->sense * 0.5 *
-                           (brc_gauge_strain(sim, across[0]) + brc_gauge_strain(sim, across[1]));
+    c->strain_axial[i] =
+        at_mean(rig, i, c->strain_axial, rig->sense * brc_gauge_strain(sim, rig->axis));
+    double lateral = brc_gauge_strain(sim, across[0]) + brc_gauge_strain(sim, across[1]);
+    c->strain_lateral[i] = at_mean(rig, i, c->strain_lateral, rig->sense * 0.5 * lateral);
     c->rate[i] = rig->rate;
     c->unbalanced[i] = rig->unbalanced;
     c->kinetic_ratio[i] = stored > 0 ? l->kinetic / stored : 0;
@@ -81,6 +98,20 @@ size_t brc_curve_peak_row(const struct brc_rig *rig)
     return i;
 }
 
+/* A load that stays: hardening against softening, as of a confined or a frictional specimen. */
+static bool is_plateau(const struct brc_rig *rig)
+{
+    const struct brc_curve *c = &rig->curve;
+    size_t i = c->table.n, first = (size_t)rig->stage_row;
+    double low = HUGE_VAL, high = 0, length = rig->params.plateau;
+    while (i > first && fabs(c->strain[c->table.n - 1] - c->strain[i - 1]) <= length) {
+        i--;
+        low = fmin(low, c->force[i]);
+        high = fmax(high, c->force[i]);
+    }
+    return length > 0 && i > first && low >= (1 - FLAT) * high && high > 0;
+}
+
 const char *brc_curve_why_no_peak(const struct brc_rig *rig)
 {
     const struct brc_curve *c = &rig->curve;
@@ -92,7 +123,15 @@ const char *brc_curve_why_no_peak(const struct brc_rig *rig)
     for (size_t i = brc_curve_peak_row(rig); i < c->table.n; i++)
         if (c->force[i] < FALLEN * peak)
             return NULL;
-    return brc_curve_no_peak;
+    return is_plateau(rig) ? NULL : brc_curve_no_peak;
+}
+
+/* A peak that is a plateau says so beside its value. */
+static const char *peak_note(const struct brc_rig *rig)
+{
+    size_t last = rig->curve.table.n - 1;
+    bool has_fallen = rig->curve.force[last] < FALLEN * rig->force_peak;
+    return !has_fallen && is_plateau(rig) ? plateau : NULL;
 }
 
 /* Of the area that is broken at the peak, not of the whole that could break: a part of what the
@@ -126,6 +165,6 @@ void brc_curve_peak_results(const struct brc_sim *sim, struct brc_measured *out)
     const double value[] = {rig->force_peak / rig->section, rig->strain_peak - rig->stage_strain,
                             rig->force_peak};
     for (int i = 0; i < 3; i++)
-        out[i] = (struct brc_measured){note ? NAN : value[i], note};
+        out[i] = (struct brc_measured){note ? NAN : value[i], note ? note : peak_note(rig)};
     out[3] = first_broken(sim, note);
 }

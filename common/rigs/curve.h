@@ -6,7 +6,7 @@
 #include "common/engine/rig.h"
 
 /* Shared keys that a curve uses. */
-#define BRC_CURVE_KEYS "gauge sample_steps "
+#define BRC_CURVE_KEYS "gauge sample_steps plateau "
 /* Quantities of the peak, to stand in a test's list. */
 #define BRC_PEAK_QUANTITIES                                                                 \
     {"strength", "Pa", "largest stress, once the load has fallen from it"},                 \

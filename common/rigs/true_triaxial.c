@@ -18,7 +18,7 @@
 #include <string.h>
 
 #define TRUE_TRIAXIAL_PARAMS(REAL, INT, CHOICE, FLAG, TEXT, REAL3, INT3)                       \
-    TEXT(stages, "isotropic to 10 MPa, p constant to strain 0.02",                             \
+    TEXT(stages, "isotropic to 10 MPa, lateral constant to strain 0.02",                       \
          "path of the test: isotropic, p constant, lateral constant, plane strain, uniaxial "  \
          "strain, lode ANGLE, ratio X Y, each 'to strain E' or 'to STRESS'; or stress X Y Z")  \
     CHOICE(bonds, "off|normal", "off",                                                         \
@@ -33,14 +33,15 @@ static const struct brc_param true_triaxial_params[] = {BRC_PARAM_LIST(TRUE_TRIA
 #undef BRC_OWNER
 
 /* x, y, z throughout */
-#define STATE(SCALAR, VECTOR)                                                           \
-    VECTOR(double, mass, 2, BRC_STATE, "kg", "of the platens along x, y")               \
-    VECTOR(double, constant, 2, BRC_STATE, "Pa", "laws of the stage: sigma = constant") \
-    VECTOR(double, part, 2, BRC_STATE, "1", "+ part sigma_z")                           \
-    VECTOR(double, held, 2, BRC_STATE, "1", "1: the axis does not move")                \
-    VECTOR(double, sum, 3, BRC_STATE, "Pa", "stresses, summed since the last row")      \
-    VECTOR(double, asked, 2, BRC_STATE, "Pa", "stresses asked for, summed since then")  \
-    SCALAR(double, largest, BRC_STATE, "Pa", "largest stress of a row so far")          \
+#define STATE(SCALAR, VECTOR)                                                                  \
+    VECTOR(double, mass, 2, BRC_STATE, "kg", "of the platens along x, y")                      \
+    VECTOR(double, constant, 2, BRC_STATE, "Pa", "laws of the stage: sigma = constant")        \
+    VECTOR(double, part, 2, BRC_STATE, "1", "+ part sigma_z")                                  \
+    VECTOR(double, held, 2, BRC_STATE, "1", "1: the axis does not move")                       \
+    VECTOR(double, sum, 3, BRC_STATE, "Pa", "stresses, summed since the last row")             \
+    VECTOR(double, asked, 2, BRC_STATE, "Pa", "stresses asked for, summed since then")         \
+    VECTOR(double, strain_sum, 3, BRC_STATE, "1", "strains of the platens, summed since then") \
+    SCALAR(double, largest, BRC_STATE, "Pa", "largest stress of a row so far")                 \
     SCALAR(int64_t, is_over, BRC_STATE, "1", "1: the last stage has ended")
 #define BRC_OWNER struct state
 struct state {
@@ -273,6 +274,7 @@ static int drive(struct brc_sim *sim)
     for (int k = 0; k < 3; k++) {
         sigma[k] = stress_now(sim, k);
         s->sum[0][k] += sigma[k];
+        s->strain_sum[0][k] += 1 - length_now(sim, k) / rig->length[k];
     }
     if (brc_stage_is_over(stage_now(sim), rig->stage_sense, brc_loading_strain(rig), sigma))
         next_stage(sim, sigma);
@@ -321,7 +323,7 @@ static void fill_row(struct brc_sim *sim, size_t row, double steps)
     double sigma[3], eps[3];
     for (int k = 0; k < 3; k++) {
         sigma[k] = s->sum[0][k] / steps;
-        eps[k] = 1 - length_now(sim, k) / sim->rig.length[k];
+        eps[k] = s->strain_sum[0][k] / steps;
         s->largest[0] = fmax(s->largest[0], fabs(sigma[k]));
     }
     c->stage[row] = sim->rig.stage + 1;
@@ -351,6 +353,7 @@ static int measure(struct brc_sim *sim)
     fill_row(sim, row, steps);
     memset(s->sum[0], 0, sizeof s->sum[0]);
     memset(s->asked[0], 0, sizeof s->asked[0]);
+    memset(s->strain_sum[0], 0, sizeof s->strain_sum[0]);
     return 0;
 }
 

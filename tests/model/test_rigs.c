@@ -80,11 +80,17 @@ static const struct brc_rig_type *rig_at(int i)
     return own < 0 ? brc_rigs_at(i) : own == 0 ? &brc_rig_null : &rig_count;
 }
 
-/* A small disc, loaded fast, so that all tests can be made on it to their end. */
-static void build(struct fixture *f)
+/* A small disc, loaded fast, so that tests can be made on it to their end; six platens need a box.
+ */
+static void build(struct fixture *f, const struct brc_rig_type *rig)
 {
-    fixture_specimen(f, "shape: cylinder; diameter: 2 cm; height: 2 cm; grains: packing; "
-                        "diameter_min: 5 mm; diameter_max: 7 mm; seed: 2; cache: off");
+    bool is_box = rig->n_platens == 6;
+    if (f->has_specimen && is_box == (f->specimen.params.shape == BRC_SHAPE_BOX))
+        return;
+    fixture_specimen(f, is_box ? "shape: box; size: 2 cm, 2 cm, 2 cm; grains: packing; "
+                                 "diameter_min: 5 mm; diameter_max: 7 mm; seed: 2; cache: off"
+                               : "shape: cylinder; diameter: 2 cm; height: 2 cm; grains: packing; "
+                                 "diameter_min: 5 mm; diameter_max: 7 mm; seed: 2; cache: off");
 }
 
 static void start(struct fixture *f, const struct brc_model *model, const struct brc_rig_type *rig)
@@ -93,6 +99,7 @@ static void start(struct fixture *f, const struct brc_model *model, const struct
     struct brc_run_params run;
     void *values = calloc(1, model->params.owner_size + 1), *own = NULL;
     fixture_drop_sim(f);
+    build(f, rig);
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, model->params, values));
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_test_param_list, &params));
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_run_param_list, &run));
@@ -114,7 +121,6 @@ static void start(struct fixture *f, const struct brc_model *model, const struct
 
 static void each(struct fixture *f, void (*check)(struct fixture *f))
 {
-    build(f);
     for (int m = 0; m < fixture_n_models(); m++)
         for (int i = 0; i < n_rigs(); i++) {
             start(f, fixture_model(m), rig_at(i));
@@ -275,7 +281,6 @@ static void results_declared_are_results_given(void **state)
 static void an_end_is_reached(void **state)
 {
     struct fixture *f = *state;
-    build(f);
     for (int m = 0; m < brc_registry_count(); m++)
         for (int i = 0; i < n_rigs(); i++) {
             if (rig_at(i)->n_platens == 0 && !rig_at(i)->end)
@@ -295,7 +300,6 @@ static void own_columns_are_written(void **state)
     struct fixture *f = *state;
     char folder[] = "/tmp/breccia-test-rigs-XXXXXX", path[64], line[1024];
     assert_non_null(mkdtemp(folder));
-    build(f);
     start(f, &brc_model_null, &rig_count);
     fixture_steps(f, 3);
     CHECK_OK(&f->ctx, brc_output_csv(&f->ctx, folder, "curve.csv", &f->sim.rig.curve.table,
@@ -328,8 +332,7 @@ static void incomplete_tables_are_refused(void **state)
                 "test null lacks a required operation");
     rig = brc_rig_null;
     rig.n_quantities = BRC_MAX_QUANTITIES + 1;
-    CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL,
-                "25 quantities");
+    CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &test), BRC_ERR_INTERNAL, "25 quantities");
 }
 
 int main(void)

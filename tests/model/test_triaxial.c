@@ -337,6 +337,35 @@ static void sides_turn_with_the_specimen(void **state)
     free(area);
 }
 
+/* Hard cases: a thousand times the strength, and a specimen that falls to pieces. */
+static void hard_pressures_are_borne(void **state)
+{
+    static const struct {
+        const struct brc_model *model;
+        const char *settings, *pressure;
+    } cases[] = {{&brc_model_vgcm, "sigma_t: 100 kPa; tau: 500 kPa; softening: none", "100 MPa"},
+                 {&brc_model_polyhedra, "eps_th: 2e-6", "100 MPa"},
+                 {&brc_model_vgcm, "sigma_t: 10 kPa; tau: 10 kPa; softening: none", "20 kPa"},
+                 {&brc_model_polyhedra, "eps_th: 1e-7; mu: 0.1", "100 kPa"}};
+    struct fixture *f = *state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char own[64];
+        snprintf(own, sizeof own, "pressure: %s", cases[i].pressure);
+        cylinder(f);
+        fixture_test(f, cases[i].model, cases[i].settings,
+                     "kind: triaxial; target: 0.02; strain_max: 0.05; stop_drop: 0", own, "");
+        while (!brc_rigs_end(&f->sim) && f->sim.step < 6000)
+            fixture_steps(f, 1);
+        const struct brc_ledger *l = brc_accounts_settle(&f->sim);
+        print_message("%s, %s: %lld steps, stage %lld, %zu broken, lost %.3g, residual %.2g\n",
+                      cases[i].model->name, own, (long long)f->sim.step,
+                      (long long)f->sim.rig.stage, f->sim.events.table.n,
+                      brc_pressure_lost(&f->sim, f->sim.rig.memory), brc_ledger_residual(l));
+        assert_int_equal(f->sim.rig.stage, 1);
+        CHECK_BETWEEN(brc_ledger_residual(l), 0, 1e-3);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {FIXTURE_TEST(the_surface_is_closed),
@@ -344,6 +373,7 @@ int main(void)
                                        FIXTURE_TEST(a_grain_that_has_left_is_not_pressed),
                                        FIXTURE_TEST(sides_turn_with_the_specimen),
                                        FIXTURE_TEST(no_pressure_is_compression),
-                                       FIXTURE_TEST(the_ramp_is_isotropic)};
+                                       FIXTURE_TEST(the_ramp_is_isotropic),
+                                       FIXTURE_TEST(hard_pressures_are_borne)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
