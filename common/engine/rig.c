@@ -39,9 +39,10 @@ int brc_rig_check(struct brc_context *ctx, const struct brc_test *test)
 int brc_rig_create(struct brc_context *ctx, struct brc_rig *rig, const struct brc_test *test)
 {
     struct brc_fieldset set = BRC_FIELDSET(curve_fields, struct brc_curve);
-    *rig = (struct brc_rig){
-        .type = test->type, .params = *test->params, .n_platens = test->type->n_platens,
-        .stage_sense = 1};
+    *rig = (struct brc_rig){.type = test->type,
+                            .params = *test->params,
+                            .n_platens = test->type->n_platens,
+                            .stage_sense = 1};
     brc_table_init(&rig->curve.table, "curve", set, &rig->curve);
     BRC_TRY(copy_own(ctx, rig, test->own));
     rig->curve.own_columns = brc_alloc(ctx, 1, rig->type->columns.owner_size);

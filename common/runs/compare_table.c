@@ -136,7 +136,8 @@ static void put_end(FILE *out, const struct brc_summary *s)
                 s->model, s->ended_by);
 }
 
-/* Why a dash stands for a value, or what to know of one; names with the same reason share a line. */
+/* Why a dash stands for a value, or what to know of one; names with the same reason share a line.
+ */
 static void put_notes(FILE *out, const struct brc_summary *s)
 {
     for (int i = 0; i < s->n_results; i++) {

@@ -20,21 +20,11 @@
 
 /* What a run writes beside case.yaml, log and frames. A name that is missing here would be left
  * behind by --force, and mixed with the results of the new run. */
-static const char *const result_files[] = {"summary.json",
-                                           "state.h5",
-                                           "curve.csv",
-                                           "profile.csv",
-                                           "events.csv",
-                                           "broken.csv",
-                                           "curves.png",
-                                           "events_clustered.csv",
-                                           "crack_angles.csv",
-                                           "fragments.csv",
-                                           "curves.gp",
-                                           "cracks.png",
-                                           "cracks.gp",
-                                           "cracks.plot",
-                                           "gnuplot.log"};
+static const char *const result_files[] = {
+    "summary.json",     "state.h5",      "curve.csv",  "profile.csv",
+    "events.csv",       "broken.csv",    "curves.png", "events_clustered.csv",
+    "crack_angles.csv", "fragments.csv", "curves.gp",  "cracks.png",
+    "cracks.gp",        "cracks.plot",   "gnuplot.log"};
 enum { N_RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
 /* The text of a file of the folder, to be freed, and its size, since a file that begins with a

@@ -3,6 +3,7 @@
 #include "tests/fixture.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 static const char elastic[] = "interaction: all; sigma_t: 1e3 MPa; tau: 1e3 MPa; softening: none",
                   weak[] = "interaction: all; sigma_t: 1 MPa; tau: 8 MPa; softening: none",
@@ -234,11 +235,15 @@ static void check_test(struct fixture *f, const char *settings, const char *mess
     struct brc_test_params test;
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, brc_test_param_list, &test));
     fixture_set(f, brc_test_param_list, &test, settings);
-    const struct brc_test rig = brc_rigs_test(&test, NULL);
+    struct brc_test rig = brc_rigs_test(&test, NULL);
+    void *own = calloc(1, rig.type->params.owner_size + 1);
+    CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, rig.type->params, own));
+    rig.own = own;
     if (message)
         CHECK_FAILS(&f->ctx, brc_rig_check(&f->ctx, &rig), BRC_ERR_INPUT, message);
     else
         CHECK_OK(&f->ctx, brc_rig_check(&f->ctx, &rig));
+    free(own);
 }
 
 static void keys_that_bound_each_other_are_in_order(void **state)

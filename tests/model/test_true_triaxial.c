@@ -184,13 +184,12 @@ static void a_platen_without_bonds_cannot_pull(void **state)
     }
 }
 
-/* Columns of cubes: between two of them each of the eight corners of a face is a spring against the
- * other cube (`merged`: a vertex counts once), at a platen each of four of twice the stiffness, as
- * it is rigid. In series, K = 8 k_n N / (3 h (N + 1)). */
+/* Columns of cubes: each face between two of them, and each at a platen, has a spring a corner
+ * (`merged` counts corners that meet once). In series, K = 4 k_n N / (3 h (N + 1)). */
 static void cubes_give_their_springs(void **state)
 {
     enum { N = 4 };
-    const double edge = 5e-3, kn = 1e7, bulk = 8 * kn * N / (3 * edge * (N + 1));
+    const double edge = 5e-3, kn = 1e7, bulk = 4 * kn * N / (3 * edge * (N + 1));
     struct fixture *f = *state;
     fixture_grid(f, N, N, N, edge, 0);
     start(f, &brc_model_polyhedra, "bonds: off; mu: 0; kn: 1e7 N/m; kt: 1e7 N/m",
