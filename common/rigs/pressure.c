@@ -22,7 +22,7 @@
 
 /* Steps from one look at where the sides are to the next. In a slow test they move by next to
  * nothing in so many steps; a look at each step made a step of vgcm half as dear again. */
-enum { FIND_STEPS = 8 };
+enum { FIND_STEPS = 32 };
 
 /* Places and areas here are lanes of x, y, z and 0, as a surface has too many of them for sums of
  * three. A grain that carries a vertex: */

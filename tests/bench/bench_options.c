@@ -10,7 +10,7 @@
 
 #include "tests/fixture.h"
 
-enum { STEPS = 20 };
+enum { STEPS = 32 }; /* as many as the sides are looked up after */
 
 /* What is on, beyond friction, damping, walls, ledger and softening all being off. */
 static const struct setup {
@@ -26,6 +26,7 @@ static const struct setup {
     {"walls", "polyhedra", "", "kind: compression; loading: fixed; rate: 1e-6 1/s", ""},
     {"wall_friction", "polyhedra", "",
      "kind: compression; loading: fixed; rate: 1e-6 1/s; friction: 0.3", ""},
+    {"pressure", "polyhedra", "", "kind: triaxial; loading: fixed; rate: 1e-6 1/s", ""},
     {"condensed", "polyhedra", "evaluation: condensed", "", ""},
     {"gravity", "polyhedra", "", "", "gravity: 0 m/s2, 0 m/s2, -9.81 m/s2"},
     {"ledger", "polyhedra", "", "", "ledger: on"},
@@ -39,6 +40,7 @@ static const struct setup {
     {"walls", "vgcm", "", "kind: compression; loading: fixed; rate: 1e-6 1/s", ""},
     {"wall_friction", "vgcm", "",
      "kind: compression; loading: fixed; rate: 1e-6 1/s; friction: 0.3", ""},
+    {"pressure", "vgcm", "", "kind: triaxial; loading: fixed; rate: 1e-6 1/s", ""},
     {"gravity", "vgcm", "", "", "gravity: 0 m/s2, 0 m/s2, -9.81 m/s2"},
     {"ledger", "vgcm", "", "", "ledger: on"},
 };
