@@ -290,9 +290,13 @@ static void the_ramp_is_isotropic(void **state)
     for (int m = 0; m < N_MODELS; m++) {
         fixture_test(f, models[m], "", "kind: triaxial; target: 0.01; strain_max: 2e-3",
                      "pressure: 10 MPa", "");
-        while (f->sim.rig.stage == 0 && f->sim.step < 3000)
+        double rate = 0;
+        while (f->sim.rig.stage == 0 && f->sim.step < 3000) {
+            rate = f->sim.rig.rate;
             fixture_steps(f, 1);
+        }
         assert_int_equal(f->sim.rig.stage, 1);
+        assert_true(f->sim.rig.rate < 0.2 * rate); /* a stage begins as a test does */
         fixture_steps(f, 400);
         const struct brc_curve *c = &f->sim.rig.curve;
         const double *sigma_1 = column(f, "sigma_1"), *sigma_3 = column(f, "sigma_3");
