@@ -39,9 +39,18 @@ const struct brc_param_list brc_run_param_list = BRC_PARAMS(run_params, struct b
 #define RIG_SCALAR(type, name, unit, meaning) RIG_RENAMED(type, name, name, unit, meaning)
 #define LEDGER_SCALAR(name, sign, meaning) \
     {"energy_" #name, BRC_F64, 1, BRC_STATE, "J", meaning, offsetof(struct brc_sim, ledger.name)},
+#define PEAK_SCALAR(name, sign, meaning) \
+    {"peak_energy_" #name,               \
+     BRC_F64,                            \
+     1,                                  \
+     BRC_STATE,                          \
+     "J",                                \
+     "at the peak: " meaning,            \
+     offsetof(struct brc_sim, ledger_at_peak.name)},
 static const struct brc_field sim_scalars[] = {
     BRC_SIM_SCALARS(SIM_SCALAR, SIM_RENAMED) BRC_RIG_SCALARS(RIG_SCALAR, RIG_RENAMED)
-        BRC_LEDGER_TERMS(LEDGER_SCALAR) LEDGER_SCALAR(start, 0, "energy at the start")};
+        BRC_LEDGER_TERMS(LEDGER_SCALAR) LEDGER_SCALAR(start, 0, "energy at the start")
+            BRC_LEDGER_TERMS(PEAK_SCALAR)};
 const struct brc_fieldset brc_sim_scalars = BRC_FIELDSET(sim_scalars, struct brc_sim);
 
 /* Steps between two looks at the memory that moved ranges of points have left behind: often enough

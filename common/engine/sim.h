@@ -85,6 +85,7 @@ struct brc_sim {
     struct brc_contacts pairs, platens;
     struct brc_events events;
     struct brc_ledger ledger;
+    struct brc_ledger ledger_at_peak; /* at the end of the largest row of the curve */
     struct brc_rig rig;
     BRC_SIM_SCALARS(BRC_SCALAR_MEMBER, BRC_SCALAR_RENAMED)
     double skin;           /* m */

@@ -93,14 +93,13 @@ static void json_frames(FILE *out, const struct brc_summary *s)
 }
 
 /* Where the energy went: null without the ledger, whose zeros would look like values. */
-static void json_energy(FILE *out, const struct brc_summary *s)
+static void json_energy(FILE *out, const char *key, const struct brc_ledger *l, bool is_known)
 {
-    bool is_on = s->energy_check != BRC_ENERGY_OFF;
     const char *comma = "";
-    fputs("  \"energy\": {", out);
+    fprintf(out, "  \"%s\": {", key);
 #define TERM(name, sign, meaning)                   \
     fprintf(out, "%s\n    \"" #name "\": ", comma); \
-    json_number(out, is_on ? s->ledger.name : NAN); \
+    json_number(out, is_known ? l->name : NAN);     \
     comma = ",";
     BRC_LEDGER_TERMS(TERM)
 #undef TERM
@@ -138,7 +137,9 @@ int brc_output_summary(struct brc_context *ctx, const char *dir, const char *nam
     json_number_entry(out, "energy_residual", s->energy_residual);
     json_number_entry(out, "energy_drift", s->energy_drift);
     json_text_entry(out, "energy_check", checks[s->energy_check]);
-    json_energy(out, s);
+    bool is_on = s->energy_check != BRC_ENERGY_OFF;
+    json_energy(out, "energy", &s->ledger, is_on);
+    json_energy(out, "energy_at_peak", &s->ledger_at_peak, is_on && s->has_peak);
     json_number_entry(out, "unbalanced_max", s->unbalanced_max);
     fprintf(out, "  \"state_hash\": \"%016" PRIx64 "\",\n", s->state_hash);
     json_results(out, s);

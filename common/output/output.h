@@ -62,6 +62,8 @@ struct brc_summary {
     double ns_per_contact_step; /* cpu_s over steps and n_contacts_mean */
     double energy_residual, energy_drift, unbalanced_max;
     struct brc_ledger ledger; /* at the end; zeros where energy_check is off */
+    struct brc_ledger ledger_at_peak;
+    bool has_peak; /* the load has passed one */
     uint64_t state_hash;
     enum brc_energy_check energy_check;
     int n_results;

@@ -65,6 +65,7 @@ static int add_row(struct brc_sim *sim)
     if (c->force[i] > rig->force_peak) {
         rig->force_peak = c->force[i];
         rig->strain_peak = c->strain[i];
+        sim->ledger_at_peak = *l;
     }
     return 0;
 }

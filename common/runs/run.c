@@ -320,6 +320,8 @@ static int measure(struct run *r, struct brc_summary *s)
                                                            t.stiffness * stretch * stretch)
                                         : BRC_ENERGY_OFF,
         .ledger = sim->ledger,
+        .ledger_at_peak = sim->ledger_at_peak,
+        .has_peak = sim->rig.n_platens > 0 && !brc_curve_why_no_peak(&sim->rig),
         .unbalanced_max = brc_curve_unbalanced_max(sim),
         .state_hash = brc_sim_hash(sim)};
     snprintf(s->model, sizeof s->model, "%s", sim->model.name);

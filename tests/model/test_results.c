@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a test reports: values that were measured, and why others were not. */
+#include "common/engine/accounts.h"
 #include "tests/fixture.h"
 
 #include <stdio.h>
@@ -230,6 +231,27 @@ static void a_grip_holds_end_grains_alone(void **state)
     }
 }
 
+/* The ledger of the largest row stays when the load has fallen: what was dissipated by then. */
+static void the_ledger_is_kept_at_the_peak(void **state)
+{
+    struct fixture *f = *state;
+    struct brc_ledger seen = {0};
+    double largest = 0;
+    fixture_grid(f, 3, 3, 4, 0.01, 0.4);
+    fixture_sim(f, brc_registry_find("vgcm"), weak, pull, "");
+    while (!brc_rigs_done(&f->sim) && f->sim.step < 2000) {
+        fixture_steps(f, 1);
+        size_t n = f->sim.rig.curve.table.n;
+        if (n == 0 || f->sim.rig.curve.force[n - 1] <= largest)
+            continue;
+        largest = f->sim.rig.curve.force[n - 1];
+        seen = *brc_accounts_settle(&f->sim);
+    }
+    assert_null(brc_curve_why_no_peak(&f->sim.rig));
+    assert_memory_equal(&f->sim.ledger_at_peak, &seen, sizeof seen);
+    assert_true(brc_accounts_settle(&f->sim)->damage > seen.damage);
+}
+
 static void check_test(struct fixture *f, const char *settings, const char *message)
 {
     struct brc_test_params test;
@@ -269,6 +291,7 @@ int main(void)
         FIXTURE_TEST(a_test_ends_at_no_drop),
         FIXTURE_TEST(a_grip_holds_end_grains_alone),
         FIXTURE_TEST(platens_that_meet_end_the_run),
+        FIXTURE_TEST(the_ledger_is_kept_at_the_peak),
         FIXTURE_TEST(keys_that_bound_each_other_are_in_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
