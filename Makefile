@@ -201,7 +201,7 @@ uninstall: ## removes what install has put there
 	@echo "removed breccia from $(DESTDIR)$(PREFIX)"
 
 # --- checking --------------------------------------------------------------------------------------
-.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench converge hard deps clean help
+.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench converge gallery hard deps clean help
 RUN_ENV := CFG=$(CFG) BUILD=$(BUILD) BRECCIA=$(BUILD)/breccia JOBS=$(JOBS)
 check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
 	@$(RUN_ENV) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
@@ -227,6 +227,8 @@ demo: all ## both models side by side: compression, tension, Brazilian test
 	@echo "pictures:"; for picture in results/demo_*/*.png; do echo "  $$picture"; done
 hard: all $(HARD_PROGRAMS) ## hard cases of numerical stability, into docs/stability.md
 	@tests/hard/run $(HARD_PROGRAMS)
+gallery: all ## a picture of each test, for docs/tests.md
+	@docs/make-gallery $(PROGRAM)
 converge: all ## what accuracy costs: the demo's tests, into docs/speed-and-error.md; goes on where it was stopped
 	@JOBS=$(JOBS) docs/make-converge $(PROGRAM)
 build/bench/tools: .ci/deps

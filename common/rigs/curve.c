@@ -21,6 +21,12 @@ static const double FALLEN = 0.95;
 /* or once it has stayed within this part of itself over test.plateau of strain */
 static const double FLAT = 0.01;
 
+const struct brc_rig_view brc_curve_deviator_view = {.strain = "strain_axial",
+                                                     .lateral = "strain_lateral",
+                                                     .strain_label =
+                                                         "axial strain; dashed: lateral strain",
+                                                     .stress_label = "deviator"};
+
 /* A gauge strain is `now`, while stress and strain of row i are means over its steps: in fast
  * loading that would set them apart by percents. So it is taken where the platen strain had its
  * mean: on the line from the start, or in later stages, where it may go another way, on that from

@@ -16,6 +16,8 @@
     }
 enum { BRC_N_PEAK_RESULTS = 4 };
 
+/* How pictures of tests are drawn whose stress is a deviator. */
+extern const struct brc_rig_view brc_curve_deviator_view;
 /* To be called at the end of a step: a row every sample_steps, of means since the last one. */
 int brc_curve_sample(struct brc_sim *sim);
 /* The values of BRC_PEAK_QUANTITIES. */

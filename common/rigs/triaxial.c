@@ -163,6 +163,7 @@ const struct brc_rig_type brc_rig_triaxial = {
     .n_platens = 2,
     .sides = BRC_CORE_SIDES,
     .has_sides = true,
+    .view = &brc_curve_deviator_view,
     .check = brc_two_platens_check_closing,
     .place = place,
     .drive = drive,

@@ -469,6 +469,7 @@ const struct brc_rig_type brc_rig_true_triaxial = {
     .quantities = quantities,
     .n_quantities = N_QUANTITIES,
     .n_platens = 6,
+    .view = &brc_curve_deviator_view,
     .check = check,
     .place = place,
     .drive = drive,
