@@ -46,6 +46,7 @@ struct brc_summary {
     char model[64], title[256], case_name[256];
     char ended_by[64]; /* key of the condition that ended the run, "signal" or "failure" */
     bool is_finished;  /* by a condition of the test */
+    bool has_peak;     /* the load has passed one */
     int seed;
     size_t n_grains;          /* platens are none */
     size_t n_facets;          /* of the specimen, boundary included */
@@ -63,7 +64,6 @@ struct brc_summary {
     double energy_residual, energy_drift, unbalanced_max;
     struct brc_ledger ledger; /* at the end; zeros where energy_check is off */
     struct brc_ledger ledger_at_peak;
-    bool has_peak; /* the load has passed one */
     uint64_t state_hash;
     enum brc_energy_check energy_check;
     int n_results;
