@@ -10,8 +10,12 @@
 
 #include "common/engine/platen_surface.h"
 
-/* Heights s and outward normals of four vertices v over their platens; HUGE_VAL beyond a sharp
- * edge. Four that are at one platen, as most are, ask its surface at once. */
+/* Height beyond a sharp edge, in contact distances: far, but finite, since the place below a vertex
+ * is height times normal, and 0 times infinity is no number. */
+static const double POLY_BEYOND_EDGE = 1e3;
+
+/* Heights s and outward normals of four vertices v over their platens; far above them beyond a
+ * sharp edge. Four that are at one platen, as most are, ask its surface at once. */
 BRC_LANES_INLINE void poly_platen_heights(brc_lanes *s, brc_lanes out[3], const struct brc_sim *sim,
                                           const brc_lanes v[3], const int32_t body[BRC_LANES])
 {
@@ -22,7 +26,8 @@ BRC_LANES_INLINE void poly_platen_heights(brc_lanes *s, brc_lanes out[3], const 
         if (k > 0 && body[k] == body[k - 1])
             continue;
         brc_mask is_over = brc_platen_heights(platen, x[body[k]], v, &height, normal);
-        height = brc_lanes_pick(is_over, height, brc_lanes_all(HUGE_VAL));
+        height = brc_lanes_pick(is_over, height,
+                                brc_lanes_all(POLY_BEYOND_EDGE * poly_params_of(sim)->radius));
         for (int lane = k; lane < BRC_LANES; lane++) {
             (*s)[lane] = height[lane];
             for (int j = 0; j < 3; j++)

@@ -8,14 +8,22 @@
 static const char disc[] = "shape: cylinder; diameter: 2 cm; height: 5 mm; grains: packing; "
                            "diameter_min: 2 mm; diameter_max: 3 mm; seed: 4; cache: off";
 
+/* Both models, elastic. */
+static const struct {
+    const char *name, *settings;
+} models[] = {{"vgcm", "softening: none; sigma_t: 1 GPa; tau: 10 GPa"},
+              {"polyhedra", "breakable: off"}};
+enum { N_MODELS = 2 };
+static int model;
+
 static int disc_between(struct fixture *f, const char *test, const char *own)
 {
     char text[200];
     if (!f->has_specimen)
         fixture_specimen(f, disc);
     snprintf(text, sizeof text, "kind: brazilian; loading: fixed; rate: 2e-6 1/s; %s", test);
-    return fixture_try_sim(f, brc_registry_find("vgcm"),
-                           "softening: none; sigma_t: 1 GPa; tau: 10 GPa", text, own, "");
+    return fixture_try_sim(f, brc_registry_find(models[model].name), models[model].settings, text,
+                           own, "");
 }
 
 /* Load of an elastic disc at a strain of 2e-3. */
@@ -29,24 +37,31 @@ static double load_between(struct fixture *f, const char *test, const char *own)
 
 /* Edges rounder than the disc is small are a plane; a jaw embraces the disc and is stiffer than a
  * plane, the more the closer its radius; one of a huge radius is a plane again. */
-static void platens_have_their_shape(void **state)
+static void check_shapes(struct fixture *f)
 {
-    struct fixture *f = *state;
     double plane = load_between(f, "", "");
     double round = load_between(f, "plate_width: 0.1 mm", "edge_radius: 1000 m");
     double sharp = load_between(f, "plate_width: 0.5 mm", "");
     double smooth = load_between(f, "plate_width: 0.5 mm", "edge_radius: 1 mm");
     double jaw = load_between(f, "", "platens: jaws");
     double wide = load_between(f, "", "platens: jaws; jaw_ratio: 100");
-    print_message("load over that of planes: rounded %.5f, strip %.3f, with edges %.3f, jaws %.3f, "
-                  "wide ones %.3f\n",
-                  round / plane, sharp / plane, smooth / plane, jaw / plane, wide / plane);
+    print_message("%s: load over that of planes: rounded %.5f, strip %.3f, with edges %.3f, jaws "
+                  "%.3f, wide ones %.3f\n",
+                  models[model].name, round / plane, sharp / plane, smooth / plane, jaw / plane,
+                  wide / plane);
     CHECK_NEAR(round, plane, 0, 1e-3);
     assert_true(sharp < plane && smooth < 0.99 * round);
     assert_true(jaw > 1.1 * wide && wide > 0.99 * plane);
     CHECK_NEAR(wide, plane, 0, 0.05);
     CHECK_OK(&f->ctx, disc_between(f, "", "platens: jaws"));
     CHECK_NEAR(f->sim.rig.platen[1].radius, 0.015, 0, 1e-12);
+}
+
+static void platens_have_their_shape(void **state)
+{
+    for (model = N_MODELS - 1; model >= 0; model--)
+        check_shapes(*state);
+    model = 0;
 }
 
 static void keys_that_do_not_go_together_are_refused(void **state)
