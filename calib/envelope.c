@@ -104,6 +104,7 @@ struct data {
 /* The root of the law; a step of the search may leave where it is real. */
 static double root_of(double strength, double m, double sigma_3)
 {
+    /* eq:gt12:30, with A = m strength and B = strength */
     return sqrt(fmax(m * strength * sigma_3 + strength * strength, 1e-12));
 }
 

@@ -181,6 +181,15 @@ static void add_facet(const struct brc_sim *sim, const struct sides *sides, size
     arm_of(&sim->bodies, cell, mean, s->facet[i].arm);
 }
 
+static int fail_no_sides(struct brc_sim *sim)
+{
+    BRC_FAIL(
+        sim->ctx, BRC_ERR_INPUT,
+        "all of the specimen's surface faces a platen within 30 degrees, so there are no sides "
+        "for test.kind: %s; use another shape",
+        sim->rig.type->name);
+}
+
 static int build(struct brc_sim *sim, struct brc_pressure *s)
 {
     const struct brc_facets *f = &sim->specimen->facets;
@@ -189,7 +198,7 @@ static int build(struct brc_sim *sim, struct brc_pressure *s)
     int code = find_sides(sim, &pool, &sides);
     if (code == 0) {
         count_parts(f, &sides, s);
-        code = make_lists(sim->ctx, s);
+        code = s->n_facets > 0 ? make_lists(sim->ctx, s) : fail_no_sides(sim);
     }
     for (size_t facet = 0, i = 0; code == 0 && facet < f->n_facets; facet++)
         if (sides.is_side[facet])

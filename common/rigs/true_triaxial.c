@@ -124,16 +124,23 @@ static int check_box(struct brc_sim *sim)
         boundary - on, boundary);
 }
 
-static void set_laws(struct brc_sim *sim, const double sigma[3])
+/* A straight path is told by sigma_z, so it must change on it. */
+static int set_laws(struct brc_sim *sim, const double sigma[3])
 {
     struct state *s = sim->rig.own_scalars;
     struct brc_axis_law law[2];
+    if (stage_now(sim)->kind == BRC_PATH_STRESS && stage_now(sim)->value[Z] == sigma[Z])
+        BRC_FAIL(sim->ctx, BRC_ERR_INPUT,
+                 "true_triaxial, stage %lld: sigma_z is %g MPa at its start and its end, and z is "
+                 "the axis that is driven: give another stress along z",
+                 (long long)sim->rig.stage + 1, 1e-6 * sigma[Z]);
     brc_stage_laws(stage_now(sim), sigma, law);
     for (int k = 0; k < 2; k++) {
         s->constant[0][k] = law[k].constant;
         s->part[0][k] = law[k].part;
         s->held[0][k] = law[k].is_held;
     }
+    return 0;
 }
 
 /* A stage by strain has the start of a test of that strain. */
@@ -177,7 +184,7 @@ static int place(struct brc_sim *sim)
         return BRC_ERR_MEMORY;
     BRC_TRY(brc_stages_read(sim->ctx, params->stages, plan->stage, &plan->n));
     set_strain_max(rig, stage_now(sim));
-    set_laws(sim, nothing);
+    BRC_TRY(set_laws(sim, nothing));
     rig->stage_sense = brc_stage_sense(stage_now(sim), nothing);
     for (int k = 0; k < 3; k++)
         brc_two_platens_face(sim, pair_of[k], k, &like);
@@ -234,14 +241,16 @@ static int check_tension(struct brc_sim *sim, int axis, double asked)
              (long long)sim->rig.stage + 1, "xyz"[axis], 1e-6 * asked);
 }
 
-static int drive_axis(struct brc_sim *sim, int axis, double sigma_z)
+/* A held axis misses nothing, so it asks for what it has: rows that two stages share stay right. */
+static int drive_axis(struct brc_sim *sim, int axis, const double sigma[3])
 {
     struct state *s = sim->rig.own_scalars;
     if (s->held[0][axis]) {
+        s->asked[0][axis] += sigma[axis];
         set_speed(sim, axis, 0);
         return 0;
     }
-    double asked = s->constant[0][axis] + s->part[0][axis] * sigma_z;
+    double asked = s->constant[0][axis] + s->part[0][axis] * sigma[Z];
     s->asked[0][axis] += asked;
     BRC_TRY(check_tension(sim, axis, asked));
     brc_servo_push(sim, pair_of[axis], asked * area_now(sim, axis), &s->mass[0][axis]);
@@ -250,20 +259,20 @@ static int drive_axis(struct brc_sim *sim, int axis, double sigma_z)
 
 /* The laws of a stage begin from what the stage before was to reach, or what was reached where it
  * ended by strain: a p of 110 MPa is then 110 MPa, and not a step more. */
-static void next_stage(struct brc_sim *sim, const double reached[3])
+static int next_stage(struct brc_sim *sim, const double reached[3])
 {
     struct brc_rig *rig = &sim->rig;
     struct plan *plan = rig->memory;
     struct state *s = rig->own_scalars;
     if (rig->stage + 1 == plan->n) {
         s->is_over[0] = 1;
-        return;
+        return 0;
     }
     double sigma[3];
     brc_stage_reaches(stage_now(sim), reached, sigma);
     brc_loading_begin_stage(sim, brc_stage_sense(stage_now(sim) + 1, sigma));
     set_strain_max(rig, stage_now(sim));
-    set_laws(sim, sigma);
+    return set_laws(sim, sigma);
 }
 
 static int drive(struct brc_sim *sim)
@@ -277,9 +286,9 @@ static int drive(struct brc_sim *sim)
         s->strain_sum[0][k] += 1 - length_now(sim, k) / rig->length[k];
     }
     if (brc_stage_is_over(stage_now(sim), rig->stage_sense, brc_loading_strain(rig), sigma))
-        next_stage(sim, sigma);
+        BRC_TRY(next_stage(sim, sigma));
     for (int k = 0; k < 2; k++)
-        BRC_TRY(drive_axis(sim, k, sigma[Z]));
+        BRC_TRY(drive_axis(sim, k, sigma));
     BRC_TRY(brc_two_platens_load(sim, (sigma[Z] - 0.5 * (sigma[X] + sigma[Y])) * rig->section));
     set_speed(sim, Z, driven_speed(rig, Z));
     return 0;
@@ -462,7 +471,9 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
 const struct brc_rig_type brc_rig_true_triaxial = {
     .name = "true_triaxial",
     .meaning = "a box between six platens, along a path of stresses and strains",
-    .keys = BRC_LOADING_KEYS BRC_CURVE_KEYS BRC_MODULI_KEYS "friction",
+    /* without strain_max: stages say where they end */
+    .keys = "loading rate target rate_min rate_max stop_drop " BRC_CURVE_KEYS BRC_MODULI_KEYS
+            "friction",
     .params = BRC_PARAMS(true_triaxial_params, struct true_triaxial_params),
     .state = BRC_FIELDSET(state_fields, struct state),
     .columns = BRC_FIELDSET(columns_fields, struct columns),

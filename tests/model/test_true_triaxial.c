@@ -86,10 +86,12 @@ static void the_servo_needs_no_tuning(void **state)
         for (size_t row = 0; row < second; row++)
             before = fmax(before, p[row]);
         const struct brc_ledger *l = brc_accounts_settle(&f->sim);
-        print_message("%s, %s: %zu rows, missed %.2g, residual %.2g\n", specimens[i].model->name,
-                      specimens[i].stages, n, worst, brc_ledger_residual(l));
+        print_message("%s, %s: %zu rows, missed %.2g, p after the ramp %.3f of what was asked, "
+                      "residual %.2g\n",
+                      specimens[i].model->name, specimens[i].stages, n, worst,
+                      p[second] / specimens[i].p, brc_ledger_residual(l));
         CHECK_BETWEEN(worst, 0, 0.005);
-        CHECK_BETWEEN(p[second], 0.95 * specimens[i].p, HUGE_VAL);
+        CHECK_BETWEEN(p[second], 0.97 * specimens[i].p, HUGE_VAL);
         CHECK_BETWEEN(before, 0, 1.02 * specimens[i].p);
         CHECK_BETWEEN(brc_ledger_residual(l), 0, 1e-3);
     }
@@ -248,6 +250,16 @@ static void what_is_no_box_is_refused(void **state)
                 BRC_ERR_INPUT, "true_triaxial needs a box");
 }
 
+static void a_path_without_a_change_along_z_is_refused(void **state)
+{
+    struct fixture *f = *state;
+    box(f, 1);
+    CHECK_FAILS(&f->ctx,
+                fixture_try_sim(f, &brc_model_vgcm, "", "kind: true_triaxial",
+                                "stages: stress 1 MPa 1 MPa 0 MPa", ""),
+                BRC_ERR_INPUT, "give another stress along z");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {FIXTURE_TEST(the_servo_needs_no_tuning),
@@ -257,6 +269,7 @@ int main(void)
                                        FIXTURE_TEST(cubes_give_their_springs),
                                        FIXTURE_TEST(stiffness_and_stress_scale_together),
                                        FIXTURE_TEST(a_confined_box_can_be_released),
-                                       FIXTURE_TEST(what_is_no_box_is_refused)};
+                                       FIXTURE_TEST(what_is_no_box_is_refused),
+                                       FIXTURE_TEST(a_path_without_a_change_along_z_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
