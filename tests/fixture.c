@@ -210,6 +210,8 @@ int fixture_try_sim(struct fixture *f, const struct brc_model *model, const char
     fixture_set(f, brc_test_param_list, &t, test);
     fixture_set(f, brc_run_param_list, &r, run);
     struct brc_test rig = brc_rigs_test(&t, NULL);
+    if (f->instead)
+        rig.type = f->instead;
     void *values = calloc(1, rig.type->params.owner_size + 1);
     assert_non_null(values);
     CHECK_OK(&f->ctx, brc_params_defaults(&f->ctx, rig.type->params, values));

@@ -18,6 +18,7 @@ struct fixture {
     struct brc_specimen specimen;
     struct brc_sim sim;
     bool has_specimen, has_sim;
+    const struct brc_rig_type *instead; /* table for the kind that is asked for; NULL: its own */
     uint64_t random;
 };
 

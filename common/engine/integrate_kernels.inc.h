@@ -37,11 +37,16 @@ static void brc_drift_loop(struct brc_sim *sim)
     }
 }
 
-/* Local non-viscous damping of a force (or moment) f against the velocity v. As printed it acts on
- * each Cartesian component, so it depends on how the specimen lies; along the velocity it does not.
- * A body at rest is not damped: a sign of zero would push it. */
+/* A velocity below this part of what the force adds to it in the step has the direction of
+ * round-off: so have the spins of a test that has just begun. */
+#define BRC_AT_REST 1e-6
+
+/* Local non-viscous damping of a force (or moment) f against the velocity v; add: velocity that a
+ * unit of f adds in the step. As printed it acts on each Cartesian component, so it depends on how
+ * the specimen lies; along the velocity it does not. A body at rest is not damped: a sign of zero
+ * would push it. */
 BRC_LANES_INLINE void brc_local_damping(const struct brc_sim *sim, brc_lanes d[3],
-                                        const brc_lanes f[3], const brc_lanes v[3])
+                                        const brc_lanes f[3], const brc_lanes v[3], brc_lanes add)
 {
     double alpha = sim->damping_alpha;
     if (sim->run.damping == BRC_DAMPING_CARTESIAN) {
@@ -51,8 +56,9 @@ BRC_LANES_INLINE void brc_local_damping(const struct brc_sim *sim, brc_lanes d[3
         }
         return;
     }
-    brc_lanes speed = brc_norm_of_lanes(v), part = -alpha * brc_norm_of_lanes(f) / speed;
-    part = brc_lanes_where(brc_lanes_less(brc_lanes_all(0), speed), part);
+    brc_lanes speed = brc_norm_of_lanes(v), size = brc_norm_of_lanes(f);
+    brc_mask moves = brc_lanes_less(BRC_AT_REST * add * size, speed);
+    brc_lanes part = brc_lanes_where(moves, -alpha * size / speed);
     for (int k = 0; k < 3; k++)
         d[k] = part * v[k];
 }
@@ -94,7 +100,7 @@ BRC_LANES_INLINE void brc_damped_motion(const struct brc_sim *sim, brc_lanes v[3
 /* What pushes bodies i to i + 3: v or w before, force or moment, damping. Translation and rotation
  * are alike so far, and share it. */
 BRC_LANES_INLINE void brc_kick_begin(const struct brc_sim *sim, double (*v)[3], double (*f)[3],
-                                     double (*mean)[3], struct brc_kick *p)
+                                     double (*mean)[3], brc_lanes add, struct brc_kick *p)
 {
     brc_lanes damped[3];
     brc_lanes_at3(p->old, v);
@@ -103,7 +109,7 @@ BRC_LANES_INLINE void brc_kick_begin(const struct brc_sim *sim, double (*v)[3], 
         p->d[k] = brc_lanes_all(0);
     if (BRC_OPTION(sim->damping_alpha > 0)) {
         brc_damped_motion(sim, damped, p->old, mean);
-        brc_local_damping(sim, p->d, p->f, damped); /* eq:vgcm:4 */
+        brc_local_damping(sim, p->d, p->f, damped, add); /* eq:vgcm:4 */
     }
 }
 
@@ -138,7 +144,7 @@ BRC_LANES_INLINE void brc_kick_translation(const struct brc_sim *sim, size_t i, 
     const struct brc_bodies *b = &sim->bodies;
     struct brc_kick p;
     brc_lanes mass = brc_lanes_at(b->mass + i);
-    brc_kick_begin(sim, b->v + i, b->f + i, b->v_mean + i, &p);
+    brc_kick_begin(sim, b->v + i, b->f + i, b->v_mean + i, dt / mass, &p);
     for (int k = 0; k < 3; k++)
         p.now[k] = p.old[k] + dt * (p.f[k] + p.d[k]) / mass; /* eq:vgcm:1 */
     brc_kick_put(live, b->v + i, &p);
@@ -175,7 +181,7 @@ BRC_LANES_INLINE void brc_kick_rotation(const struct brc_sim *sim, size_t i, brc
     struct brc_kick p;
     brc_lanes inertia[3];
     brc_lanes_at3(inertia, b->inertia + i);
-    brc_kick_begin(sim, b->w + i, b->t + i, b->w_mean + i, &p);
+    brc_kick_begin(sim, b->w + i, b->t + i, b->w_mean + i, dt / inertia[0], &p);
     brc_mask unequal =
         live & (brc_lanes_less(inertia[0], inertia[1]) | brc_lanes_less(inertia[1], inertia[0]) |
                 brc_lanes_less(inertia[1], inertia[2]) | brc_lanes_less(inertia[2], inertia[1]));
