@@ -59,7 +59,10 @@ __attribute__((noinline, cold)) static void break_bond(struct poly_batch *batch,
                               .energy = bond.energy - last};
     brc_copy(event.x, bond.x);
     brc_copy(event.n, bond.n);
-    /* The energy is the stored one of the pose that broke it, not of the limit: the step over
+    brc_sub(event.branch, sim->bodies.x[event.b], sim->bodies.x[event.a]);
+    for (int k = 0; k < 3; k++)
+        event.force[k] = g->bond.f[k][lane];
+    /* Energy and force are those of the pose that broke it, not of the limit: the step over
      * the limit is dissipated with it, and the ledger closes. */
     c->status[contact] = BRC_BROKEN;
     brc_events_add(sim->ctx, &sim->events, sim->step, &event);

@@ -125,14 +125,6 @@ static int restore(struct brc_sim *sim, void *state)
     return 0;
 }
 
-/* eq 15 with one of its terms. Torsion turns and does not pull: it sets no dipole free. */
-static double strength(const struct brc_sim *sim, int mode)
-{
-    const struct poly_params *p = poly_params_of(sim);
-    const double modulus[BRC_N_MODES] = {p->bn, p->bt, 0};
-    return modulus[mode] * p->eps_th;
-}
-
 static const char *choice(const struct poly_params *p, const char *key, char *buffer, size_t size)
 {
     const struct brc_param_list list = BRC_PARAMS(param_list, struct poly_params);
@@ -193,6 +185,5 @@ const struct brc_model brc_model_polyhedra = {
     .free = release,
     .select = select_kernels,
     .restore = restore,
-    .strength = strength,
     .describe = describe,
 };

@@ -31,14 +31,35 @@ VGCM_INLINE void vgcm_points4_viscous(brc_lanes viscous[VGCM_N_MOTION], brc_lane
                    brc_lanes_where(whole | closed, ft), s, t);
 }
 
+/* The elastic force of points whose damage begins: what their break will have set free, which is
+ * not to be seen any more when they break, as softening has taken it all by then. Without the
+ * friction of pressed points, which stays. In a column of its own and in axes of the contact: the
+ * loop reads no byte of it, and a contact that turns as it softens takes it along. */
+static __attribute__((noinline)) void
+vgcm_onset_put(const struct vgcm_loop *l, double *const point[BRC_LANES],
+               const struct vgcm_points4 *q, const struct vgcm_point_lanes *w, brc_mask begins)
+{
+    for (int k = 0; k < BRC_LANES; k++) {
+        if (!begins[k])
+            continue;
+        size_t j = (size_t)(point[k] - l->p->law[0]) / VGCM_N_POINT;
+        double area = point[k][VGCM_AREA], normal = 2 * q->bond[VGCM_HALF_KN][k] * w->un[k];
+        double shear = 2 * q->bond[VGCM_HALF_KS][k] * sqrt(w->force2[k]);
+        double held = fmax(shear + l->law->mu * fmin(normal, 0), 0);
+        double part = shear > 0 ? 2 * q->bond[VGCM_HALF_KS][k] * held / shear : 0;
+        brc_set(l->p->onset[j], area * fmax(normal, 0), area * part * w->s[k],
+                area * part * w->t[k]);
+    }
+}
+
 /* Point j of contact i has just broken: rare, so that it may be slow, and out of the loop. The
  * status of the whole contact is looked up anew, as other points may have broken in the same step.
  * The mode is that of the larger part of the damage. */
 static void vgcm_event_add(const struct vgcm_loop *l, size_t i, size_t j)
 {
     const struct brc_contacts *c = l->c;
-    const double *point = l->p->law[j];
-    double t[3], branch[3], *xa = l->sim->bodies.x[c->a[i]];
+    const double *point = l->p->law[j], *onset = l->p->onset[j];
+    double t[3], *xa = l->sim->bodies.x[c->a[i]];
     struct brc_event event = {.a = c->a[i],
                               .b = c->b[i],
                               .facet = c->facet[i],
@@ -47,13 +68,16 @@ static void vgcm_event_add(const struct vgcm_loop *l, size_t i, size_t j)
                                                                        : BRC_MODE_SHEAR,
                               .area = point[VGCM_AREA],
                               .energy = point[VGCM_DISSIPATED]};
-    brc_sub(branch, l->sim->bodies.x[c->b[i]], xa);
+    brc_sub(event.branch, l->sim->bodies.x[c->b[i]], xa);
     brc_cross(t, l->f->n[i], l->f->s[i]);
     brc_copy(event.n, l->f->n[i]);
     brc_copy(event.x, xa);
-    brc_axpy(event.x, 0.5 * brc_norm(branch) + l->f->plane[i], l->f->n[i]);
+    brc_axpy(event.x, 0.5 * brc_norm(event.branch) + l->f->plane[i], l->f->n[i]);
     brc_axpy(event.x, point[VGCM_AT_S], l->f->s[i]);
     brc_axpy(event.x, point[VGCM_AT_T], t);
+    brc_axpy(event.force, -onset[0], event.n); /* tension pulls b back */
+    brc_axpy(event.force, onset[1], l->f->s[i]);
+    brc_axpy(event.force, onset[2], t);
     brc_events_add(l->sim->ctx, &l->sim->events, l->sim->step, &event);
     bool is_whole = false;
     int flags = vgcm_law_flags(l->law);
@@ -100,13 +124,18 @@ VGCM_INLINE void vgcm_points4_begin(const struct vgcm_loop *l, int flags,
 
 /* Writes what has changed of the points' states. Most points of a damaged contact do not change
  * in a step: a line that is not written need not go back to memory. */
-VGCM_INLINE void vgcm_points4_write(double *const point[BRC_LANES],
-                                    const struct vgcm_point_lanes *w, brc_lanes fs, brc_lanes ft,
-                                    brc_mask grows, brc_lanes dissipated)
+VGCM_INLINE void vgcm_points4_write(const struct vgcm_loop *l, double *const point[BRC_LANES],
+                                    const struct vgcm_points4 *q, const struct vgcm_point_lanes *w,
+                                    brc_lanes area, brc_lanes dissipated)
 {
+    brc_lanes none = brc_lanes_all(0), fs = w->shear_ratio * w->s, ft = w->shear_ratio * w->t;
+    brc_mask grows = brc_lanes_less(w->damage_old, w->dn + w->ds);
     bool grow = brc_lanes_any(grows);
     if (!grow && !w->slides && !brc_lanes_any(w->loose))
         return;
+    brc_mask begins = grows & ~brc_lanes_less(none, w->damage_old) & brc_lanes_less(none, area);
+    if (brc_lanes_any(begins))
+        vgcm_onset_put(l, point, q, w, begins);
     brc_lanes own[] = {w->slip_s - (w->s - fs), w->slip_t - (w->t - ft), w->dn, w->ds};
     brc_lanes_transpose(own);
     for (int k = 0; k < BRC_LANES; k++)
@@ -136,8 +165,8 @@ VGCM_INLINE void vgcm_points4_step(struct vgcm_loop *l, int flags, struct vgcm_c
     vgcm_lanes_open(l->law, q->bond, flags, &w);
     vgcm_lanes_slide(l->law, q->bond, flags, &w);
     brc_lanes dissipated = vgcm_lanes_account(l->law, q->bond, flags, area, &w, &x->energy);
-    brc_lanes fs = w.shear_ratio * w.s, ft = w.shear_ratio * w.t, damage = w.dn + w.ds;
-    vgcm_points4_write(at, &w, fs, ft, brc_lanes_less(w.damage_old, damage), dissipated);
+    brc_lanes fs = w.shear_ratio * w.s, ft = w.shear_ratio * w.t;
+    vgcm_points4_write(l, at, q, &w, area, dissipated);
     vgcm_force_add(q->force, area * w.normal_force, area * fs, area * ft, s, t);
     brc_mask is = vgcm_lanes_whole(l->law, flags, w.dn, w.ds), broke = w.was_intact & ~is;
     if (brc_lanes_any(broke))

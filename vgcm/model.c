@@ -226,14 +226,6 @@ static void platens(struct brc_sim *sim, void *state)
     own->loops->platens(sim, &own->law, own->flags);
 }
 
-/* Without the friction that a pressed point has beside its cohesion, as that stays when it breaks.
- */
-static double strength(const struct brc_sim *sim, int mode)
-{
-    const struct vgcm_params *p = sim->params;
-    return mode == BRC_MODE_TENSION ? p->sigma_t : p->tau;
-}
-
 /* One line for the header of a run: what a reader wants who compares it with the print. */
 static void describe(const struct brc_sim *sim, const void *state, char *text, size_t size)
 {
@@ -275,7 +267,7 @@ const struct brc_model brc_model_vgcm = {
     .flags = BRC_MODEL_ROTATES | BRC_MODEL_ADDS,
     .no_bodies = "l",
     .no_pairs = "ta tb h un",
-    .no_platens = "u status",
+    .no_platens = "u status onset",
     .shape = shape,
     .bond = vgcm_bond,
     .pairs = vgcm_update_contacts,
@@ -288,5 +280,4 @@ const struct brc_model brc_model_vgcm = {
     .free = free,
     .select = select_loops,
     .strength_left = vgcm_strength_left,
-    .strength = strength,
     .describe = describe};

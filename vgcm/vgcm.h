@@ -123,7 +123,8 @@ struct vgcm_contacts {
 #define VGCM_POINT_FIELDS(SCALAR, VECTOR)                                                      \
     VECTOR(double, law, 8, BRC_STATE, "m, m2, J, 1", "s, t, area, lost, slip s t, damage n s") \
     SCALAR(double, h, BRC_STATE, "m", "platens: height over the centre of a along n")          \
-    SCALAR(double, un, BRC_STATE, "m", "platens: opening; facets have it from u")
+    SCALAR(double, un, BRC_STATE, "m", "platens: opening; facets have it from u")              \
+    VECTOR(double, onset, 3, BRC_STATE, "N", "facets: force as damage began: n, s, t")
 
 struct vgcm_points {
     VGCM_POINT_FIELDS(BRC_COLUMN, BRC_COLUMN3)

@@ -54,6 +54,8 @@ void brc_events_add(struct brc_context *ctx, struct brc_events *e, int64_t step,
     brc_copy(e->n[i], event->n);
     e->area[i] = event->area;
     e->energy[i] = event->energy;
+    brc_copy(e->force[i], event->force);
+    brc_copy(e->branch[i], event->branch);
     e->count[event->mode]++;
 }
 

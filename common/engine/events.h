@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Crack log: one event a broken bond (polyhedra) or fully damaged local point (vgcm). */
+/* Crack log: one event a broken bond (polyhedra) or fully damaged local point (vgcm). Force and
+ * branch stand here, as neither can be told later: the force is gone with the bond, and the grains
+ * fly apart. */
 #ifndef BRC_EVENTS_H
 #define BRC_EVENTS_H
 
@@ -17,12 +19,14 @@ enum brc_mode { BRC_MODE_TENSION, BRC_MODE_SHEAR, BRC_MODE_TORSION, BRC_N_MODES 
     VECTOR(double, x, 3, BRC_STATE, "m", "place")                                      \
     VECTOR(double, n, 3, BRC_STATE, "1", "normal, from a to b")                        \
     SCALAR(double, area, BRC_STATE, "m2", "area that broke")                           \
-    SCALAR(double, energy, BRC_STATE, "J", "energy dissipated by the break")
+    SCALAR(double, energy, BRC_STATE, "J", "energy dissipated by the break")           \
+    VECTOR(double, force, 3, BRC_STATE, "N", "force on b that the break set free")     \
+    VECTOR(double, branch, 3, BRC_STATE, "m", "from the centre of a to that of b")
 
 struct brc_event {
     int32_t a, b, facet, point;
     enum brc_mode mode;
-    double x[3], n[3], area, energy;
+    double x[3], n[3], area, energy, force[3], branch[3];
 };
 
 struct brc_events {

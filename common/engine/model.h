@@ -70,9 +70,6 @@ struct brc_model {
     /* Part of the tensile strength of an intact bond (row of sim->pairs) that is left, in [0, 1]:
      * tells what holds together. None: all of it. */
     double (*strength_left)(const struct brc_sim *sim, const void *state, size_t row);
-    /* Stress at which a bond breaks that is loaded in this mode (enum brc_mode) alone [Pa]: what a
-     * break sets free. None: not known. */
-    double (*strength)(const struct brc_sim *sim, int mode);
     /* One paragraph for the run header: readings chosen, derived stiffness. */
     void (*describe)(const struct brc_sim *sim, const void *state, char *text, size_t size);
 };

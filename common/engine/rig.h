@@ -48,7 +48,12 @@ enum brc_loading { BRC_LOADING_ADAPTIVE, BRC_LOADING_FIXED };
     REAL(plateau, "1", "0.005", "[0, 1)",                                                        \
          "a load that stays within 1 % over this strain counts as a peak passed; 0: never",      \
          "kind=*")                                                                               \
-    INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")
+    INT(sample_steps, "10", "[1, 1000000]", "steps between two rows of the curve")               \
+    INT(acoustic_steps, "10", "[0, 1000000]",                                                    \
+        "acoustic events: breaks of one are at most so many steps apart",                        \
+        .flags = BRC_PARAM_MAY_CHANGE)                                                           \
+    REAL(acoustic_radii, "1", "6", "(0, 1000]",                                                  \
+         "acoustic events: and at most so many mean grain radii", .flags = BRC_PARAM_MAY_CHANGE)
 
 struct brc_test_params {
     BRC_PARAM_MEMBERS(BRC_TEST_PARAMS)
@@ -133,6 +138,9 @@ struct brc_rig_type {
 
     /* --- optional, with a default --- */
 
+    /* Stresses along x, y, z of a row of the curve [Pa], which must be principal ones. Default: the
+     * stress is not uniform, so that envelopes learn nothing of the test. */
+    void (*stresses)(const struct brc_sim *sim, size_t row, double sigma[3]);
     /* Judges keys together. Default: accepts. */
     int (*check)(struct brc_context *ctx, const struct brc_test_params *test, const void *own);
     /* Velocity of a grain in the field that the test imposes now. Default: at rest. */

@@ -16,8 +16,8 @@
 
 enum { BLOCK_SIZE = 1 << 14 }; /* a multiple of 8: the hash goes on between blocks */
 /* States: 2: with a hash of the specimen. 3: the case holds its overrides as values. 4: accounts of
- * the grains, stages of the loading. */
-const struct brc_checksum_kind brc_checksum_state = {"state", 4};
+ * the grains, stages of the loading. 5: forces of cracks. */
+const struct brc_checksum_kind brc_checksum_state = {"state", 5};
 const struct brc_checksum_kind brc_checksum_frame = {"frame", 1};
 static const char advice[] = "use an undamaged copy, or start the run anew with --force";
 

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Breaks are joined by union-find over those that are near, which a grid of cells finds: a run
  * breaks up to some 1e5 points, most of them in the few steps of its failure, where comparing all
- * with all would take minutes. Called when results are asked for; reads the log of cracks, and
- * knows of the model only the strength of its bonds.
+ * with all would take minutes. Called when results are asked for; reads the log of cracks alone, so
+ * that it knows no model.
  *
- * The log holds no forces. What a break sets free is taken as strength times area: in tension along
- * the normal, in shear along the slip of the two grains up to now, of which the log does not tell
- * either. The two forces act at the centres of the grains, so they are a dipole. */
+ * A break sets a pair of forces free, at the centres of its grains: the moments about these centres
+ * that a force at the facet has beside it turn the grains, and are the part of the pair that is not
+ * symmetric. So it goes, and what is left is the stress that the bond has carried times the volume
+ * of its two grains (Love, Weber). Sources further away, whose loads change as waves pass, are
+ * none of the event's: Hazzard and Young (2004) sum over all contacts of the grains that a crack
+ * parts, which would need forces of whole contacts over steps to be kept for each break. */
 #include "common/rigs/acoustic.h"
 
 #include "common/base/disjoint.h"
@@ -118,44 +121,16 @@ int brc_acoustic_cluster(struct brc_context *ctx, const int64_t *step, double (*
 
 /* ---- moments ------------------------------------------------------------------------------- */
 
-/* How far grain b has slipped over a at the facet so far, as a unit vector; zero where it has not.
- */
-static void slip_direction(const struct brc_sim *sim, size_t event, double slip[3])
-{
-    const struct brc_events *e = &sim->events;
-    const struct brc_facets *f = &sim->specimen->facets;
-    double a[3], b[3];
-    brc_set(slip, 0, 0, 0);
-    if (e->facet[event] < 0 || (size_t)e->facet[event] >= f->n_facets)
-        return;
-    const double *at = f->centroid[e->facet[event]];
-    brc_bodies_carry(&sim->bodies, (size_t)e->a[event], at, a);
-    brc_bodies_carry(&sim->bodies, (size_t)e->b[event], at, b);
-    brc_sub(slip, b, a);
-    brc_axpy(slip, -brc_dot(slip, e->n[event]), e->n[event]);
-    brc_normalise(slip, slip);
-}
-
-/* Adds the dipole of a break: the force set free times the distance of the centres, along the
- * normal; what does not turn the pair of it in shear. */
-static void add_moment(const struct brc_sim *sim, size_t event, double moment[6])
+/* Adds -sum of forces on the grains times their places: the force on b goes, and its opposite on a.
+ * As they sum to 0, the places count from wherever one likes, and their difference is the branch.
+ * With this sign a crack that opens has a positive trace, as an explosion has in seismology. */
+static void add_moment(const struct brc_events *e, size_t event, double moment[6])
 {
     static const int index[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
-    const struct brc_events *e = &sim->events;
-    const struct brc_bodies *b = &sim->bodies;
-    const double *n = e->n[event];
-    double along[3], length = brc_distance(b->x0[e->a[event]], b->x0[e->b[event]]);
-    int mode = e->mode[event];
-    brc_copy(along, n);
-    if (mode == BRC_MODE_SHEAR)
-        slip_direction(sim, event, along);
-    if (mode == BRC_MODE_TORSION)
-        return;
-    double size = sim->model.strength ? sim->model.strength(sim, mode) : NAN;
-    size *= e->area[event] * length;
+    const double *f = e->force[event], *l = e->branch[event];
     for (int k = 0; k < 6; k++) {
         int i = index[k][0], j = index[k][1];
-        moment[k] += size * 0.5 * (along[i] * n[j] + along[j] * n[i]);
+        moment[k] -= 0.5 * (f[i] * l[j] + f[j] * l[i]);
     }
 }
 
@@ -180,14 +155,13 @@ double brc_acoustic_r(const double m[6])
     gsl_eigen_symm_free(work);
     for (int k = 0; k < 3; k++)
         sum += fabs(part[k]);
-    return trace / (fabs(trace) + sum);
+    return 100 * trace / (fabs(trace) + sum);
 }
 
 /* ---- events -------------------------------------------------------------------------------- */
 
-static void add_break(const struct brc_sim *sim, struct brc_acoustic *a, size_t to, size_t event)
+static void add_break(const struct brc_events *e, struct brc_acoustic *a, size_t to, size_t event)
 {
-    const struct brc_events *e = &sim->events;
     if (a->breaks[to]++ == 0)
         a->first_step[to] = e->step[event];
     a->last_step[to] = e->step[event];
@@ -195,7 +169,7 @@ static void add_break(const struct brc_sim *sim, struct brc_acoustic *a, size_t 
     a->area[to] += e->area[event];
     a->energy[to] += e->energy[event];
     brc_axpy(a->x[to], e->area[event], e->x[event]);
-    add_moment(sim, event, a->moment[to]);
+    add_moment(e, event, a->moment[to]);
 }
 
 /* Both lists ascend, so that one walk finds all rows. */
@@ -238,12 +212,13 @@ int brc_acoustic_find(const struct brc_sim *sim, struct brc_acoustic *out)
     int32_t *of = brc_alloc(sim->ctx, e->table.n, sizeof *of);
     if (!of)
         return BRC_ERR_MEMORY;
-    int code = brc_acoustic_cluster(sim->ctx, e->step, e->x, e->table.n, BRC_ACOUSTIC_STEPS,
-                                    BRC_ACOUSTIC_RADII * mean_radius(sim), of, &n_events);
+    const struct brc_test_params *p = &sim->rig.params;
+    int code = brc_acoustic_cluster(sim->ctx, e->step, e->x, e->table.n, p->acoustic_steps,
+                                    p->acoustic_radii * mean_radius(sim), of, &n_events);
     if (code == 0)
         code = brc_table_resize(sim->ctx, &out->table, n_events);
     for (size_t i = 0; code == 0 && i < e->table.n; i++)
-        add_break(sim, out, (size_t)of[i], i);
+        add_break(e, out, (size_t)of[i], i);
     free(of);
     BRC_TRY(code);
     set_loads(&sim->rig.curve, out);

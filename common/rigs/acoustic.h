@@ -8,11 +8,6 @@
 
 struct brc_sim;
 
-/* Breaks belong together when they are at most so many steps and mean grain radii apart, or joined
- * by a chain of such. A scaled mass makes the frequency of a grain on its springs about one a step,
- * so that a wave crosses this distance in about as many steps. */
-enum { BRC_ACOUSTIC_STEPS = 10, BRC_ACOUSTIC_RADII = 6 };
-
 #define BRC_ACOUSTIC_FIELDS(SCALAR, VECTOR)                                                       \
     SCALAR(int64_t, first_step, BRC_STATE, "1", "step of the first break")                        \
     SCALAR(int64_t, last_step, BRC_STATE, "1", "step of the last break")                          \
@@ -24,25 +19,28 @@ enum { BRC_ACOUSTIC_STEPS = 10, BRC_ACOUSTIC_RADII = 6 };
     SCALAR(double, area, BRC_STATE, "m2", "area that broke")                                      \
     SCALAR(double, energy, BRC_STATE, "J", "energy dissipated by the breaks")                     \
     SCALAR(double, magnitude, BRC_STATE, "1", "2/3 log10(energy in J) - 3.2")                     \
-    VECTOR(double, moment, 6, BRC_STATE, "N m", "moment tensor xx, yy, zz, yz, xz, xy")           \
+    VECTOR(double, moment, 6, BRC_STATE, "N m", "moment tensor xx, yy, zz, yz, xz, xy; + opens")  \
     SCALAR(double, scalar_moment, BRC_STATE, "N m", "root of half the sum of its squares")        \
     SCALAR(double, moment_magnitude, BRC_STATE, "1", "2/3 log10(scalar moment in N m) - 6.07")    \
-    SCALAR(double, r, BRC_STATE, "1", "R: isotropic part, 1 bursts open, -1 falls in, 0 shears")
+    SCALAR(double, r, BRC_STATE, "%", "R: above 30 opens, -30 to 30 shears, below -30 falls in")
 
-/* In the order of their first breaks. Without a strength of the model the moments are NAN. */
+/* In the order of their first breaks. */
 struct brc_acoustic {
     BRC_ACOUSTIC_FIELDS(BRC_COLUMN, BRC_COLUMN3)
     struct brc_table table;
 };
 
-/* Of all breaks so far. Freed by brc_acoustic_free, also after a failure. */
+/* Of all breaks so far, by test.acoustic_steps and test.acoustic_radii. Freed by brc_acoustic_free,
+ * also after a failure. */
 int brc_acoustic_find(const struct brc_sim *sim, struct brc_acoustic *out);
 void brc_acoustic_free(struct brc_acoustic *a);
 /* of[i]: number of the event of break i, by their first breaks; *n_events: how many there are. The
- * steps ascend; `steps` and `reach` [m] as above. */
+ * steps ascend. Breaks belong together when they are at most `steps` and `reach` [m] apart, or
+ * joined by a chain of such. */
 int brc_acoustic_cluster(struct brc_context *ctx, const int64_t *step, double (*x)[3], size_t n,
                          int64_t steps, double reach, int32_t *of, size_t *n_events);
-/* R of a moment tensor (Feignier and Young 1992), NAN of one that is zero or is none. */
+/* R of a moment tensor in per cent, 100 tr / (|tr| + sum of the sizes of the deviatoric part's
+ * eigenvalues) (Feignier and Young 1992); NAN of one that is zero or is none. */
 double brc_acoustic_r(const double moment[6]);
 
 #endif

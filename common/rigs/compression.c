@@ -17,4 +17,5 @@ const struct brc_rig_type brc_rig_compression = {
     BRC_COMPRESSION_RESULTS,
     BRC_TWO_PLATENS,
     .check = brc_two_platens_check_closing,
-    .place = place};
+    .place = place,
+    .stresses = brc_two_platens_stresses};

@@ -26,11 +26,19 @@ const struct brc_quantity brc_readings_quantities[BRC_N_READINGS] = {
     {"n_events", "1", "acoustic events"},
     {"b_value", "1", "b of their magnitudes"},
     {"b_value_error", "1", "its standard error"},
+    {"sigma_1", "Pa", "largest principal stress at the peak, compression positive"},
+    {"sigma_3", "Pa", "smallest one there"},
+    {"sigma_1_residual", "Pa", "largest one at the end, where the load has settled"},
+    {"sigma_3_residual", "Pa", "smallest one there"},
     {"n_pieces", "1", "fragments of 2 grains or more"},
     {"largest_piece", "1", "part of the mass in the largest fragment"}};
 
 static const char no_memory[] = "out of memory", no_break[] = "nothing has broken",
-                  few_facets[] = "fewer than 10 facets have broken";
+                  few_facets[] = "fewer than 10 facets have broken",
+                  not_uniform[] = "the stress in this test is not uniform",
+                  few_rows[] = "fewer than 8 rows of the curve since the peak",
+                  unsettled[] = "the load was still changing at the end: a larger test.strain_max, "
+                                "with test.stop_drop: 0, shows what is left";
 
 /* A few facets always have a plane in common. */
 enum { PLANE_FACETS = 10 };
@@ -63,6 +71,61 @@ static void read_peak(const struct brc_sim *sim, struct brc_measured out[2])
     out[0] = measured(note ? NAN : work_to(rig, row), note);
     out[1] = measured(energy, note);
 }
+
+/* ---- principal stresses ---------------------------------------------------------------------- */
+
+/* Halves of a residual's rows differ in their mean load by less than this part of the peak: rows of
+ * broken rock shake by some per cent, and a load that falls to half of the peak on its way to
+ * test.stop_drop differs by far more. */
+static const double SETTLED = 0.05;
+
+static double mean_load(const struct brc_rig *rig, size_t first, size_t end)
+{
+    double sum = 0;
+    for (size_t i = first; i < end; i++)
+        sum += rig->curve.force[i];
+    return sum / (double)(end - first);
+}
+
+/* The last quarter of the rows since the peak, from *first on: the residual state, or why there is
+ * none. By rows and not by strain, as the adaptive loading spends its rows where things happen. */
+static const char *residual_rows(const struct brc_rig *rig, size_t peak, size_t *first)
+{
+    size_t n = rig->curve.table.n, quarter = (n - peak) / 4, middle = n - quarter / 2;
+    *first = n - quarter;
+    if (quarter < 2)
+        return few_rows;
+    double change = mean_load(rig, *first, middle) - mean_load(rig, middle, n);
+    return fabs(change) > SETTLED * rig->force_peak ? unsettled : NULL;
+}
+
+/* Largest and smallest mean stress of rows. */
+static void extremes(const struct brc_sim *sim, size_t first, size_t end, const char *note,
+                     struct brc_measured out[2])
+{
+    double mean[3] = {0, 0, 0}, sigma[3];
+    for (size_t i = first; !note && i < end; i++) {
+        sim->rig.type->stresses(sim, i, sigma);
+        for (int k = 0; k < 3; k++)
+            mean[k] += sigma[k] / (double)(end - first);
+    }
+    out[0] = measured(fmax(fmax(mean[0], mean[1]), mean[2]), note);
+    out[1] = measured(fmin(fmin(mean[0], mean[1]), mean[2]), note);
+}
+
+static void read_stresses(const struct brc_sim *sim, struct brc_measured out[4])
+{
+    const struct brc_rig *rig = &sim->rig;
+    size_t first = 0;
+    const char *note = rig->type->stresses ? brc_curve_why_no_peak(rig) : not_uniform;
+    size_t peak = note ? 0 : brc_curve_peak_row(rig);
+    extremes(sim, peak, peak + 1, note, out);
+    if (!note)
+        note = residual_rows(rig, peak, &first);
+    extremes(sim, first, rig->curve.table.n, note, out + 2);
+}
+
+/* ---- cracks ---------------------------------------------------------------------------------- */
 
 static void read_angles(const struct brc_sim *sim, struct brc_measured out[2])
 {
@@ -122,5 +185,6 @@ void brc_readings(const struct brc_sim *sim, struct brc_measured out[BRC_N_READI
     read_angles(sim, out + 2);
     read_plane(sim, out + 4);
     read_acoustic(sim, out + 6);
-    read_fragments(sim, out + 9);
+    read_stresses(sim, out + 9);
+    read_fragments(sim, out + 13);
 }

@@ -18,4 +18,5 @@ const struct brc_rig_type brc_rig_tension = {.name = "tension",
                                              BRC_CORE_RESULTS,
                                              BRC_TWO_PLATENS,
                                              .check = brc_two_platens_check,
-                                             .place = place};
+                                             .place = place,
+                                             .stresses = brc_two_platens_stresses};

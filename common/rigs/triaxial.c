@@ -46,8 +46,6 @@ static const struct brc_field triaxial_columns[] = {TRIAXIAL_COLUMNS(BRC_FIELD, 
 
 static const struct brc_quantity quantities[] = {
     BRC_COMPRESSION_QUANTITIES,
-    {"sigma_1", "Pa", "stress along z at the peak: strength + pressure"},
-    {"sigma_3", "Pa", "pressure on the sides there"},
     {"area_lost", "1", "part of the sides whose grains have left, so that no pressure acts there"}};
 enum { N_QUANTITIES = sizeof quantities / sizeof quantities[0] };
 
@@ -120,13 +118,16 @@ static int measure(struct brc_sim *sim)
 static void results(const struct brc_sim *sim, struct brc_measured *out)
 {
     const struct brc_rig *rig = &sim->rig;
-    double pressure = pressure_asked(sim);
     brc_compression_results(sim, out);
-    const char *note = brc_curve_why_no_peak(rig);
-    struct brc_measured *more = out + BRC_N_COMPRESSION_RESULTS;
-    more[0] = (struct brc_measured){note ? NAN : rig->force_peak / rig->section + pressure, note};
-    more[1] = (struct brc_measured){pressure, NULL};
-    more[2] = (struct brc_measured){rig->memory ? brc_pressure_lost(sim, rig->memory) : 0, NULL};
+    out[BRC_N_COMPRESSION_RESULTS] =
+        (struct brc_measured){rig->memory ? brc_pressure_lost(sim, rig->memory) : 0, NULL};
+}
+
+static void stresses(const struct brc_sim *sim, size_t row, double sigma[3])
+{
+    const struct columns *c = sim->rig.curve.own_columns;
+    sigma[0] = sigma[1] = c->sigma_3[row];
+    sigma[2] = c->sigma_1[row];
 }
 
 /* Isotropic while the pressure is raised, and that of compression afterwards. */
@@ -169,6 +170,7 @@ const struct brc_rig_type brc_rig_triaxial = {
     .drive = drive,
     .measure = measure,
     .results = results,
+    .stresses = stresses,
     .field = field,
     .end = end,
     .restore = restore,

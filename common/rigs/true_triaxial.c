@@ -468,6 +468,14 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
     out[9] = (struct brc_measured){worst, NULL};
 }
 
+static void stresses(const struct brc_sim *sim, size_t row, double sigma[3])
+{
+    const struct columns *c = sim->rig.curve.own_columns;
+    sigma[X] = c->sigma_x[row];
+    sigma[Y] = c->sigma_y[row];
+    sigma[Z] = c->sigma_z[row];
+}
+
 const struct brc_rig_type brc_rig_true_triaxial = {
     .name = "true_triaxial",
     .meaning = "a box between six platens, along a path of stresses and strains",
@@ -486,6 +494,7 @@ const struct brc_rig_type brc_rig_true_triaxial = {
     .drive = drive,
     .measure = measure,
     .results = results,
+    .stresses = stresses,
     .field = field,
     .end = end,
     .restore = restore,

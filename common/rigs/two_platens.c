@@ -106,6 +106,13 @@ void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3])
     v[k] = -rig->sense * rig->rate * (sim->bodies.x0[grain][k] - middle);
 }
 
+void brc_two_platens_stresses(const struct brc_sim *sim, size_t row, double sigma[3])
+{
+    const struct brc_rig *rig = &sim->rig;
+    brc_set(sigma, 0, 0, 0);
+    sigma[rig->axis] = rig->sense * rig->curve.stress[row];
+}
+
 /* They differ while the specimen accelerates; curve and loading take the mean. */
 double brc_two_platens_force(const struct brc_rig *rig)
 {

@@ -36,6 +36,8 @@ int brc_two_platens_check_closing(struct brc_context *ctx, const struct brc_test
 #define BRC_TWO_PLATENS                                                          \
     .n_platens = 2, .drive = brc_two_platens_drive, .measure = brc_curve_sample, \
     .field = brc_two_platens_field
+/* Operation `stresses` of a specimen that such a pair loads along its axis, its sides free. */
+void brc_two_platens_stresses(const struct brc_sim *sim, size_t row, double sigma[3]);
 /* Mean area of the specimen across an axis [m2]. */
 double brc_two_platens_section(const struct brc_sim *sim, int axis);
 

@@ -5,6 +5,7 @@
 #include "common/rigs/sieve.h"
 #include "tests/fixture.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 static const char weak[] = "interaction: all; sigma_t: 1 MPa; tau: 8 MPa; softening: none",
@@ -82,11 +83,11 @@ static void r_tells_bursts_from_shear(void **state)
     const double burst[] = {2, 2, 2, 0, 0, 0}, fall[] = {-1, -1, -1, 0, 0, 0},
                  shear[] = {0, 0, 0, 0, 3, 0}, opening[] = {0, 0, 5, 0, 0, 0},
                  turned[] = {2.5, 2.5, 0, 0, 0, 2.5}, none[6] = {0}, unknown[6] = {NAN};
-    CHECK_NEAR(brc_acoustic_r(burst), 1, 0, 1e-12);
-    CHECK_NEAR(brc_acoustic_r(fall), -1, 0, 1e-12);
-    CHECK_NEAR(brc_acoustic_r(shear), 0, 1e-12, 0);
-    CHECK_NEAR(brc_acoustic_r(opening), 3.0 / 7, 0, 1e-12);
-    CHECK_NEAR(brc_acoustic_r(turned), 3.0 / 7, 0, 1e-12);
+    CHECK_NEAR(brc_acoustic_r(burst), 100, 0, 1e-12);
+    CHECK_NEAR(brc_acoustic_r(fall), -100, 0, 1e-12);
+    CHECK_NEAR(brc_acoustic_r(shear), 0, 1e-10, 0);
+    CHECK_NEAR(brc_acoustic_r(opening), 300.0 / 7, 0, 1e-12);
+    CHECK_NEAR(brc_acoustic_r(turned), 300.0 / 7, 0, 1e-12);
     assert_true(isnan(brc_acoustic_r(none)) && isnan(brc_acoustic_r(unknown)));
 }
 
@@ -102,6 +103,10 @@ static void add(struct fixture *f, int64_t step, size_t row, enum brc_mode mode,
                               .energy = energy};
     brc_copy(event.x, facets->centroid[c->facet[row]]);
     brc_copy(event.n, facets->normal[c->facet[row]]);
+    brc_sub(event.branch, f->sim.bodies.x[event.b], f->sim.bodies.x[event.a]);
+    double up = event.branch[2] > 0 ? 1 : -1; /* what pulls b back, or has held it from slipping */
+    brc_set(event.force, mode == BRC_MODE_SHEAR ? -8e6 * event.area * up : 0, 0,
+            mode == BRC_MODE_TENSION ? -1e6 * event.area * up : 0);
     c->status[row] = BRC_BROKEN;
     brc_events_add(&f->ctx, &f->sim.events, step, &event);
 }
@@ -138,8 +143,6 @@ static void breaks_near_in_time_are_one_event(void **state)
     for (size_t i = 0; i < f->sim.pairs.n; i++)
         if (is_between(f, i, layer(f, 2)))
             add(f, 150, i, BRC_MODE_SHEAR, 1e-6);
-    for (size_t i = 0; i < f->sim.bodies.n_grains; i++)
-        f->sim.bodies.x[i][0] += 1e-5 * f->sim.bodies.x0[i][2]; /* upper grains slip along x */
     CHECK_OK(&f->ctx, brc_acoustic_find(&f->sim, &a));
     assert_int_equal(a.table.n, 2);
     assert_int_equal(a.first_step[0], 100);
@@ -154,17 +157,77 @@ static void breaks_near_in_time_are_one_event(void **state)
     const double open[6] = {0, 0, 1e6 * 4 * area * edge, 0, 0, 0};
     const double slip[6] = {0, 0, 0, 0, 0.5 * 8e6 * 4 * area * edge, 0};
     CHECK_NEAR_ARRAY(a.moment[0], open, 6, 1e-9, 1e-9);
-    for (int k = 0; k < 6; k++) /* n may point up or down with b; the pair has one sense */
-        CHECK_NEAR(fabs(a.moment[1][k]), slip[k], 1e-9, 1e-9);
-    assert_true(a.moment[1][4] > 0);
+    CHECK_NEAR_ARRAY(a.moment[1], slip, 6, 1e-9, 1e-9);
     CHECK_NEAR(a.scalar_moment[1], 16, 0, 1e-9);
-    CHECK_NEAR(a.r[0], 3.0 / 7, 0, 1e-9);
-    CHECK_NEAR(a.r[1], 0, 1e-9, 0);
+    CHECK_NEAR(a.r[0], 300.0 / 7, 0, 1e-9);
+    CHECK_NEAR(a.r[1], 0, 1e-7, 0);
     brc_acoustic_free(&a);
-    f->sim.model.strength = NULL;
-    CHECK_OK(&f->ctx, brc_acoustic_find(&f->sim, &a));
-    assert_true(isnan(a.scalar_moment[0]) && isnan(a.r[1]) && isfinite(a.magnitude[0]));
-    brc_acoustic_free(&a);
+}
+
+/* The keys of the case: how far apart in steps, and in grain radii. */
+static void the_window_is_that_of_the_case(void **state)
+{
+    static const struct window {
+        const char *test;
+        size_t n_events;
+    } windows[] = {{"", 2},
+                   {"; acoustic_steps: 60", 1},
+                   {"; acoustic_steps: 0", 3},
+                   {"; acoustic_radii: 0.1", 8}};
+    struct fixture *f = *state;
+    for (int k = 0; k < 4; k++) {
+        struct brc_acoustic a;
+        char test[256];
+        snprintf(test, sizeof test, "%s%s", pull, windows[k].test);
+        fixture_grid(f, 2, 2, 3, 0.01, 0);
+        fixture_sim(f, brc_registry_find("vgcm"), weak, test, "");
+        for (int side = 1; side < 3; side++)
+            for (size_t i = 0; i < f->sim.pairs.n; i++)
+                if (is_between(f, i, layer(f, side)))
+                    add(f, side == 1 ? 100 + (int64_t)(f->sim.events.table.n > 1) : 150, i,
+                        BRC_MODE_TENSION, 1e-6);
+        CHECK_OK(&f->ctx, brc_acoustic_find(&f->sim, &a));
+        assert_int_equal(a.table.n, windows[k].n_events);
+        brc_acoustic_free(&a);
+    }
+}
+
+/* ---- principal stresses -------------------------------------------------------------------- */
+
+/* A curve made by hand: a peak of 8 N and what follows it. */
+static void add_rows(struct fixture *f, int n, double first, double last)
+{
+    for (int i = 0; i < n; i++) {
+        size_t row;
+        struct brc_rig *rig = &f->sim.rig;
+        CHECK_OK(&f->ctx, brc_rig_add_row(&f->ctx, rig, &row));
+        rig->curve.force[row] = first + (last - first) * i / (n - 1);
+        rig->curve.stress[row] = rig->curve.force[row] / rig->section;
+        rig->force_peak = fmax(rig->force_peak, rig->curve.force[row]);
+    }
+}
+
+static void principal_stresses(void **state)
+{
+    struct fixture *f = *state;
+    const char *note;
+    fixture_grid(f, 2, 2, 3, 0.01, 0);
+    fixture_sim(f, brc_registry_find("vgcm"), weak, pull, "");
+    double per_force = 1 / f->sim.rig.section;
+    add_rows(f, 9, 0, 8);
+    reading(f, "sigma_3", &note);
+    assert_non_null(strstr(note, "no peak"));
+    add_rows(f, 40, 8, 3);
+    CHECK_NEAR(reading(f, "sigma_1", &note), 0, 0, 0);
+    CHECK_NEAR(reading(f, "sigma_3", &note), -8 * per_force, 0, 1e-12); /* it pulls */
+    reading(f, "sigma_3_residual", &note);
+    assert_non_null(strstr(note, "still changing"));
+    add_rows(f, 40, 2, 2.2);
+    CHECK_NEAR(reading(f, "sigma_3_residual", &note), -2.15 * per_force, 0, 0.02);
+    CHECK_NEAR(reading(f, "sigma_1_residual", &note), 0, 0, 0);
+    fixture_sim(f, brc_registry_find("vgcm"), weak, "kind: none", "");
+    reading(f, "sigma_1", &note);
+    assert_non_null(strstr(note, "not uniform"));
 }
 
 /* ---- fragments ----------------------------------------------------------------------------- */
@@ -256,6 +319,8 @@ int main(void)
         FIXTURE_TEST(clusters_are_those_of_all_pairs),
         FIXTURE_TEST(r_tells_bursts_from_shear),
         FIXTURE_TEST(breaks_near_in_time_are_one_event),
+        FIXTURE_TEST(the_window_is_that_of_the_case),
+        FIXTURE_TEST(principal_stresses),
         FIXTURE_TEST(a_sieve_sorts_fragments),
         FIXTURE_TEST(work_at_the_peak_is_that_of_the_ledger),
         FIXTURE_TEST(without_breaks_there_are_no_cracks),

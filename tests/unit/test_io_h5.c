@@ -257,7 +257,7 @@ static void test_other_format(void **state)
     save(f, path);
     seal(path, brc_checksum_state.format + 1, BRC_CHECKSUM_SIZE);
     CHECK_FAILS(&f->ctx, brc_h5_load(&f->ctx, path, &f->sim, &extra), BRC_ERR_INPUT,
-                "has the state format 5, breccia " BRC_VERSION " reads 4");
+                "has the state format 6, breccia " BRC_VERSION " reads 5");
     unlink(path);
 }
 
