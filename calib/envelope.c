@@ -17,6 +17,9 @@
 
 enum { LEAST_PEAKS = 3, MOST_STEPS = 200 };
 static const double CONVERGED = 1e-12;
+/* sigma_3 must spread by this part of the largest sigma_1: a slope over what a servo misses, or
+ * over rounding, would be noise with an interval that looks like a result. */
+static const double SPREAD = 1e-3;
 
 /* Two values and the covariance of their errors. */
 struct pair {
@@ -38,20 +41,27 @@ static double variance(const struct pair *p, double by_0, double by_1)
 
 static int check(struct brc_context *ctx, const struct calib_peak *peak, size_t n)
 {
-    size_t n_other = 0;
+    double low = HUGE_VAL, high = -HUGE_VAL, largest = 0;
     for (size_t i = 0; i < n; i++) {
         if (!isfinite(peak[i].sigma_1) || !isfinite(peak[i].sigma_3))
             BRC_FAIL(ctx, BRC_ERR_INPUT,
                      "envelope: peak %zu is no number; leave out tests that "
                      "had no peak",
                      i + 1);
-        n_other += peak[i].sigma_3 != peak[0].sigma_3;
+        low = fmin(low, peak[i].sigma_3);
+        high = fmax(high, peak[i].sigma_3);
+        largest = fmax(largest, fabs(peak[i].sigma_1));
     }
-    if (n < LEAST_PEAKS || n_other == 0)
+    if (n < LEAST_PEAKS)
         BRC_FAIL(ctx, BRC_ERR_INPUT,
-                 "envelope: %zu peaks, %zu of them at another sigma_3 than the first; it takes 3 "
-                 "at 2 confining stresses",
-                 n, n_other);
+                 "envelope: %zu points, it takes 3 at 2 confining stresses; add runs that have "
+                 "passed a peak",
+                 n);
+    if (high - low <= SPREAD * largest)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "envelope: all %zu points are at one confining stress (sigma_3 = %.4g MPa), it "
+                 "takes 2; add runs at another pressure",
+                 n, 1e-6 * high);
     return 0;
 }
 
@@ -195,6 +205,7 @@ int calib_hoek_brown_fit(struct brc_context *ctx, const struct calib_peak *peak,
                  q * s, m);
     out->strength = estimate(q * s, p.cov[0][0] * s * s, n);
     out->m = estimate(m, p.cov[1][1], n);
+    out->a = estimate(m * q * s, variance(&p, m, q) * s * s, n);
     out->tension = q * s * (sqrt(m * m + 4) - m) / 2;
     out->r2 = 1 - left * s * s / gsl_stats_tss(&peak->sigma_1, 2, n);
     out->scatter = s * sqrt(left / (double)(n - 2));

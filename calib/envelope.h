@@ -27,12 +27,14 @@ struct calib_mohr_coulomb {
 
 /* sigma_1 = sigma_3 + sqrt(m strength sigma_3 + strength^2): a = 1/2, s = 1. */
 struct calib_hoek_brown {
-    struct calib_estimate strength, m;
-    double tension; /* Pa, positive: direct tension, where sigma_1 is 0 */
+    struct calib_estimate strength, m; /* Pa, 1; strength is B of eq 30 of gt12 */
+    struct calib_estimate a;           /* m strength: A of it [Pa] */
+    double tension;                    /* Pa, positive: direct tension, where sigma_1 is 0 */
     double r2, scatter;
 };
 
-/* At least 3 peaks, at 2 or more different sigma_3; tension is negative. */
+/* At least 3 peaks, whose sigma_3 spread by 0.1 % of the largest sigma_1 or more; tension is
+ * negative. */
 int calib_mohr_coulomb_fit(struct brc_context *ctx, const struct calib_peak *peak, size_t n,
                            struct calib_mohr_coulomb *out);
 int calib_hoek_brown_fit(struct brc_context *ctx, const struct calib_peak *peak, size_t n,

@@ -6,6 +6,7 @@
  * Nothing is done here but to choose what other rooms do. The order matters twice: what can be
  * refused is refused before a specimen is made, which may take minutes, and signals are held before
  * MPI starts its threads. */
+#include "calib/envelope_runs.h"
 #include "common/parallel/comm.h"
 #include "common/runs/compare.h"
 #include "common/base/console.h"
@@ -28,14 +29,16 @@ enum { MAX_OVERRIDES = 256 };
 
 /* What a command was asked for. Members that options fill are found by their offsets. */
 struct options {
-    const char *operand; /* CASE, or the section of `params`, or a file */
+    const char *operand;   /* CASE, or the section of `params`, or a file */
+    const char **operands; /* of commands that take any number; the last one is also `operand` */
+    size_t n_operands;
     const char *out, *table, *format;
     /* The ladder's own, and what a run is told: its members are those of runs and comparisons, too,
      * so that an option of several commands has one place. */
     struct brc_converge_options ladder;
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
-    bool is_quiet, is_help;
+    bool is_quiet, is_help, is_residual;
     const char *program;
     /* The command and its words without flags, for the command that goes on: moved to the front of
      * argv as they are read. A program may change argv, so that no copy of
@@ -155,6 +158,16 @@ static int act_export(struct brc_context *ctx, const struct options *o)
                     : brc_export_format(ctx, &options, o->format);
 }
 
+static int act_envelope(struct brc_context *ctx, const struct options *o)
+{
+    return calib_envelope(ctx,
+                          &(struct calib_envelope_options){.run = o->operands,
+                                                           .n = o->n_operands,
+                                                           .dir = o->out,
+                                                           .is_residual = o->is_residual,
+                                                           .is_forced = o->ladder.run.is_forced});
+}
+
 /* One section, or all. The lists are those of the reader of case files, so that what is printed is
  * what is read. */
 static int act_params(struct brc_context *ctx, const struct options *o)
@@ -215,8 +228,8 @@ static int act_tests(struct brc_context *ctx, const struct options *o)
 
 #define AT(member) offsetof(struct options, member)
 
-/* Options by command: R run, C compare, V converge, X export. One name may stand in several rows,
- * where commands mean different things by it. */
+/* Options by command: R run, C compare, V converge, X export, E envelope. One name may stand in
+ * several rows, where commands mean different things by it. */
 static const struct option {
     const char *name, *value; /* value NULL: a flag */
     size_t member;
@@ -239,6 +252,8 @@ static const struct option {
      "runs at a time; default: 1, for times that nothing disturbs"},
     {"-o", "DIR", AT(out), 0, "RC",
      "folder of results; default: results/<case>/<model>, results/<case>"},
+    {"-o", "DIR", AT(out), 0, "E", "folder of tables and picture; default: the table is printed"},
+    {"--residual", NULL, AT(is_residual), 0, "E", "of what is left at the end, not of the peaks"},
     {"-o", "FILE", AT(out), 0, "X", "what to write; default: on standard output"},
     {"--table", "NAME", AT(table), 0, "X", "CSV of this table: curve, events, bodies, pairs, ..."},
     {"--format", "FORMAT", AT(format), 0, "X",
@@ -249,10 +264,10 @@ static const struct option {
      "go on from the saved state, to the same bits"},
     {"--resume", NULL, AT(ladder.run.is_resumed), 0, "V",
      "keep finished runs, go on with the others"},
-    {"--force", NULL, AT(ladder.run.is_forced), 0, "RCV", "replace results that are there"},
+    {"--force", NULL, AT(ladder.run.is_forced), 0, "RCVE", "replace results that are there"},
     {"--force", NULL, AT(ladder.run.is_forced), 0, "X", "replace the file that is there"},
     {"--quiet", NULL, AT(is_quiet), 0, "RCV", "no progress, no log lines"},
-    {"--help", NULL, AT(is_help), 0, "RCVPMIXT", "this text"},
+    {"--help", NULL, AT(is_help), 0, "RCVEPMIXT", "this text"},
 };
 enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
@@ -284,6 +299,12 @@ static const struct command commands[] = {
      "converge.txt, converge.csv, converge_runs.csv and converge.png; finished runs are never "
      "lost.\n",
      run_ladder},
+    {"envelope", 'E', false, "RUN...", "fit Mohr-Coulomb and Hoek-Brown through the peaks of runs",
+     "breccia envelope results/confined_*/vgcm -o results/envelope",
+     "RUN is a folder of results of compression, direct tension or a confined test; with -o "
+     "writes\n"
+     "envelope.csv, envelope_fits.csv and envelope.png. Runs without a peak are left out.\n",
+     act_envelope},
     {"info", 'I', false, "FILE", "tell what a saved state or a frame holds",
      "breccia info results/pair/vgcm/state.h5",
      "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n",
@@ -339,7 +360,7 @@ static void print_help(FILE *out)
 static void print_command_help(FILE *out, const struct command *c)
 {
     fprintf(out, "usage: breccia %s%s%s%s\n\n%s\n%s", c->name, *c->operand ? " " : "", c->operand,
-            strchr("RCV", c->letter) ? " [OPTION]..." : "", c->does, c->more);
+            strchr("RCVE", c->letter) ? " [OPTION]..." : "", c->does, c->more);
     fputs("\noptions:\n", out);
     for (int i = 0; i < N_OPTIONS; i++) {
         char left[40];
@@ -409,6 +430,11 @@ static int read_option(struct brc_context *ctx, struct options *o, const struct 
     return 0;
 }
 
+static bool takes_many(const struct command *c)
+{
+    return strstr(c->operand, "...") != NULL;
+}
+
 /* One word of the command line, with the next one where it needs a value. Flags are not kept: the
  * command that goes on says --resume, in place of --force, and is not quiet. */
 static int read_word(struct brc_context *ctx, const struct command *c, char **words, int *i,
@@ -416,10 +442,11 @@ static int read_word(struct brc_context *ctx, const struct command *c, char **wo
 {
     char *word = words[*i];
     if (word[0] != '-') {
-        if (o->operand || !*c->operand)
+        bool is_more = o->operand && !takes_many(c);
+        if (is_more || !*c->operand)
             BRC_FAIL(ctx, BRC_ERR_USAGE, "%s takes %s, '%.80s' is too much", c->name,
                      *c->operand ? c->operand : "no operand", word);
-        o->operand = o->kept[o->n_kept++] = word;
+        o->operand = o->operands[o->n_operands++] = o->kept[o->n_kept++] = word;
         return 0;
     }
     size_t length = strcspn(word, "=");
@@ -487,7 +514,10 @@ static int act(struct brc_context *ctx, const struct command *c, char **words, s
     }
     if (needs_file && !o->operand)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "%s needs a %s: %s", c->name,
-                 strcmp(c->operand, "CASE") == 0 ? "case file" : "file", c->example);
+                 strcmp(c->operand, "CASE") == 0 ? "case file"
+                 : takes_many(c)                 ? "folder of a run"
+                                                 : "file",
+                 c->example);
     if (o->ladder.run.is_resumed && o->ladder.run.is_forced)
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--resume and --force exclude each other");
     return c->has_case ? act_on_case(ctx, o, c) : c->act(ctx, o);
@@ -549,7 +579,8 @@ int main(int argc, char **argv)
     struct options o = {
         .program = argc > 0 ? argv[0] : "breccia",
         .ladder = {.observable = "strength", .axes = "", .seeds = 4, .refine = 8, .jobs = 1}};
-    int code = brc_console_open(&ctx);
+    o.operands = brc_alloc(&ctx, (size_t)argc + 1, sizeof *o.operands);
+    int code = o.operands ? brc_console_open(&ctx) : BRC_ERR_MEMORY;
     signal(SIGXFSZ, SIG_IGN); /* a file over the allowed size is a failed write like any other */
     if (code == 0)
         code = act_first(&ctx, argv + (argc > 0), &o);
@@ -562,5 +593,6 @@ int main(int argc, char **argv)
             print_resume(stderr, code, &o);
         fputc('\n', stderr);
     }
+    free(o.operands);
     return brc_error_exit_status(code);
 }

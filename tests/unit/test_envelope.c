@@ -22,7 +22,8 @@ static double curve(double sigma_3)
 static void make(struct calib_peak peak[N], double (*law)(double), gsl_rng *random, double noise)
 {
     for (int i = 0; i < N; i++) {
-        peak[i].sigma_3 = 3e6 * (i / 2);
+        int pressure = i / 2;
+        peak[i].sigma_3 = 3e6 * pressure;
         peak[i].sigma_1 = law(peak[i].sigma_3) + gsl_ran_gaussian(random, noise);
     }
 }
@@ -71,7 +72,7 @@ static void test_intervals_hold_what_they_say(void **state)
     (void)state;
     struct brc_context ctx = BRC_CONTEXT_INIT;
     struct calib_peak peak[N];
-    struct cover c[4] = {0};
+    struct cover c[5] = {0};
     double scatter = 0;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < SETS; i++) {
@@ -86,8 +87,9 @@ static void test_intervals_hold_what_they_say(void **state)
         CHECK_OK(&ctx, calib_hoek_brown_fit(&ctx, peak, N, &hb));
         count(&c[2], &hb.strength, STRENGTH);
         count(&c[3], &hb.m, M);
+        count(&c[4], &hb.a, M * STRENGTH);
     }
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
         print_message("held %.3f, mean %.4f\n", c[k].held, c[k].mean);
         CHECK_BETWEEN(c[k].held, 0.935, 0.965);
         CHECK_NEAR(c[k].mean, 1, 0.02, 0);
@@ -106,8 +108,9 @@ static void test_what_is_refused(void **state)
                             same[] = {{5e6, 100e6}, {5e6, 101e6}, {5e6, 102e6}},
                             falling[] = {{0, 100e6}, {5e6, 90e6}, {10e6, 80e6}},
                             none[] = {{0, 100e6}, {5e6, NAN}, {10e6, 180e6}};
-    CHECK_FAILS(&ctx, calib_mohr_coulomb_fit(&ctx, two, 2, &mc), BRC_ERR_INPUT, "2 peaks");
-    CHECK_FAILS(&ctx, calib_hoek_brown_fit(&ctx, same, 3, &hb), BRC_ERR_INPUT, "0 of them");
+    CHECK_FAILS(&ctx, calib_mohr_coulomb_fit(&ctx, two, 2, &mc), BRC_ERR_INPUT, "2 points");
+    CHECK_FAILS(&ctx, calib_hoek_brown_fit(&ctx, same, 3, &hb), BRC_ERR_INPUT,
+                "one confining stress (sigma_3 = 5 MPa)");
     CHECK_FAILS(&ctx, calib_mohr_coulomb_fit(&ctx, falling, 3, &mc), BRC_ERR_INPUT, "the slope -2");
     CHECK_FAILS(&ctx, calib_hoek_brown_fit(&ctx, falling, 3, &hb), BRC_ERR_INPUT, "do not rise");
     CHECK_FAILS(&ctx, calib_mohr_coulomb_fit(&ctx, none, 3, &mc), BRC_ERR_INPUT, "peak 2");
