@@ -26,6 +26,8 @@ struct pair {
     double value[2], cov[2][2];
 };
 
+/* Student's t and not 1.96: with 3 points the interval is 6 times as wide as that, and the width is
+ * what a user decides by whether to run more tests. */
 static struct calib_estimate estimate(double value, double variance, size_t n)
 {
     double error = sqrt(fmax(variance, 0));
@@ -39,6 +41,7 @@ static double variance(const struct pair *p, double by_0, double by_1)
     return by_0 * by_0 * p->cov[0][0] + 2 * by_0 * by_1 * p->cov[0][1] + by_1 * by_1 * p->cov[1][1];
 }
 
+/* What no fit can be made of, in words that say which runs are missing. */
 static int check(struct brc_context *ctx, const struct calib_peak *peak, size_t n)
 {
     double low = HUGE_VAL, high = -HUGE_VAL, largest = 0;
@@ -74,6 +77,8 @@ static double scale_of(const struct calib_peak *peak, size_t n)
     return sum > 0 ? sum / (double)n : 1;
 }
 
+/* The line has strength and slope; cohesion and angle follow, with the errors of both carried over
+ * by the covariance: they are far from independent. */
 int calib_mohr_coulomb_fit(struct brc_context *ctx, const struct calib_peak *peak, size_t n,
                            struct calib_mohr_coulomb *out)
 {
@@ -118,6 +123,8 @@ static double root_of(double strength, double m, double sigma_3)
     return sqrt(fmax(m * strength * sigma_3 + strength * strength, 1e-12));
 }
 
+/* Of sigma_1 itself, each point with the same weight: seeds scatter by about the same stress at low
+ * and high pressure. */
 static int residuals(const gsl_vector *x, void *user, gsl_vector *f)
 {
     const struct data *d = user;
@@ -156,6 +163,8 @@ static void begin(const struct data *d, double x[2])
     x[1] = square > 0 && slope > 0 ? slope / x[0] : 10;
 }
 
+/* Trust region, as the root bends where the search may come to its end; a Jacobian by hand, since
+ * the one by differences would lose half of the digits that the test of exact peaks asks for. */
 static int search(struct brc_context *ctx, struct data *d, gsl_multifit_nlinear_workspace *w,
                   struct pair *p, double *left)
 {
@@ -182,6 +191,8 @@ static int search(struct brc_context *ctx, struct data *d, gsl_multifit_nlinear_
     return 0;
 }
 
+/* Strength and m are free, s and a are those of intact rock: with three or four pressures, which is
+ * what people run, more values would fit the noise. */
 int calib_hoek_brown_fit(struct brc_context *ctx, const struct calib_peak *peak, size_t n,
                          struct calib_hoek_brown *out)
 {

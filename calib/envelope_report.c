@@ -42,12 +42,14 @@ struct report {
 
 /* ---- fits ---------------------------------------------------------------------------------- */
 
+/* What this report is of: one of the two states of a run. */
 static const struct calib_peak *point_of(const struct report *r, size_t i)
 {
     const struct calib_run *run = &r->runs.run[i];
     return r->options->is_residual ? &run->residual : &run->peak;
 }
 
+/* Compressed ones first, so that the line's points are the beginning of the curve's. */
 static void sort_points(struct report *r)
 {
     size_t n = 0;
@@ -64,6 +66,7 @@ static void add_row(struct report *r, struct row row)
     r->row[r->n_rows++] = row;
 }
 
+/* Listed once, for the screen and for the file: neither can have a value that the other lacks. */
 static void list_rows(struct report *r)
 {
     static const char line[] = "Mohr-Coulomb", curve[] = "Hoek-Brown";
@@ -82,6 +85,8 @@ static void list_rows(struct report *r)
     }
 }
 
+/* A failure only where neither law fits: a set with two pressures and a tension has a curve and no
+ * line. The first law's message is told, as the second one says the same of the same points. */
 static int fit(struct brc_context *ctx, struct report *r)
 {
     int code = calib_mohr_coulomb_fit(&r->line_ctx, r->point, r->n_compressed, &r->line);
@@ -95,6 +100,7 @@ static int fit(struct brc_context *ctx, struct report *r)
 
 /* ---- the table ----------------------------------------------------------------------------- */
 
+/* A dash and not 0: an unconfined test has a sigma_3 of 0. */
 static void print_stress(FILE *out, double value)
 {
     if (isfinite(value))
@@ -124,6 +130,7 @@ static void print_points(FILE *out, const struct report *r)
     }
 }
 
+/* Also where there is no fit: who asked for two laws is told why there is one. */
 static void print_quality(FILE *out, const char *law, bool is_there, double r2, double scatter,
                           size_t n, const char *why)
 {
@@ -134,6 +141,8 @@ static void print_quality(FILE *out, const char *law, bool is_there, double r2, 
         fprintf(out, "%-12s no fit: %s\n", law, why);
 }
 
+/* Intervals beside the values, not errors: with few points a standard error says too little by a
+ * factor that readers do not have in mind. */
 static void print_fits(FILE *out, const struct report *r)
 {
     fprintf(out, "\n%-12s %-8s %9s  %-21s\n", r->options->is_residual ? "residual" : "peak", "",
@@ -158,6 +167,8 @@ static void print_fits(FILE *out, const struct report *r)
 
 /* ---- files --------------------------------------------------------------------------------- */
 
+/* In SI and with all digits, as in every table for programs; the fits are in the units of the
+ * screen, which the file names. */
 static int write_points(struct brc_context *ctx, const struct report *r)
 {
     struct brc_text_file file;
@@ -209,6 +220,8 @@ static void put_laws(FILE *out, const struct report *r, double low, double high)
     fputs("end_of_data\n", out);
 }
 
+/* The script has its data in it and stands beside the picture: it can be changed and drawn again
+ * without the runs. */
 static int write_picture(struct brc_context *ctx, const struct report *r)
 {
     static const char *const name[] = {"envelope"};
@@ -258,6 +271,7 @@ static int check_folder(struct brc_context *ctx, const struct calib_envelope_opt
     return brc_folder_check_writable(ctx, o->dir);
 }
 
+/* After the table is printed: a folder without room loses no fit. */
 static int write_files(struct brc_context *ctx, const struct report *r)
 {
     if (!r->options->dir)
@@ -270,6 +284,7 @@ static int write_files(struct brc_context *ctx, const struct report *r)
     return 0;
 }
 
+/* The points are printed before they are fitted: where that fails, they show why. */
 static int make_report(struct brc_context *ctx, struct report *r)
 {
     BRC_TRY(calib_runs_read(ctx, r->options, &r->runs));

@@ -108,6 +108,8 @@ static void add_key(char list[BRC_NAMES_SIZE], const char *key, size_t n)
         brc_names_add(list, BRC_NAMES_SIZE, name);
 }
 
+/* By the texts by which a resumed run is compared with its state: all keys, defaults included, so
+ * that one case that gives a default and one that leaves it out are the same. */
 static void compare_runs(struct calib_runs *all, const struct calib_run *a,
                          const struct calib_run *b)
 {
@@ -125,6 +127,7 @@ static void compare_runs(struct calib_runs *all, const struct calib_run *a,
     }
 }
 
+/* Each against the first that has a point: a note needs the keys, not who is odd among many. */
 int calib_runs_read(struct brc_context *ctx, const struct calib_envelope_options *o,
                     struct calib_runs *out)
 {

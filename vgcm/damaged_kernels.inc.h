@@ -31,24 +31,29 @@ VGCM_INLINE void vgcm_points4_viscous(brc_lanes viscous[VGCM_N_MOTION], brc_lane
                    brc_lanes_where(whole | closed, ft), s, t);
 }
 
+/* Elastic stress of points whose damage begins: across the facet, and in shear. */
+struct vgcm_onset {
+    brc_lanes normal, s, t;
+};
+
 /* The elastic force of points whose damage begins: what their break will have set free, which is
  * not to be seen any more when they break, as softening has taken it all by then. Without the
  * friction of pressed points, which stays. In a column of its own and in axes of the contact: the
  * loop reads no byte of it, and a contact that turns as it softens takes it along. */
-static __attribute__((noinline)) void
-vgcm_onset_put(const struct vgcm_loop *l, double *const point[BRC_LANES],
-               const struct vgcm_points4 *q, const struct vgcm_point_lanes *w, brc_mask begins)
+static __attribute__((noinline)) void vgcm_onset_put(const struct vgcm_loop *l,
+                                                     double *const point[BRC_LANES],
+                                                     const struct vgcm_onset *o, brc_mask begins)
 {
     for (int k = 0; k < BRC_LANES; k++) {
         if (!begins[k])
             continue;
         size_t j = (size_t)(point[k] - l->p->law[0]) / VGCM_N_POINT;
-        double area = point[k][VGCM_AREA], normal = 2 * q->bond[VGCM_HALF_KN][k] * w->un[k];
-        double shear = 2 * q->bond[VGCM_HALF_KS][k] * sqrt(w->force2[k]);
+        double area = point[k][VGCM_AREA], normal = o->normal[k];
+        double shear = sqrt(o->s[k] * o->s[k] + o->t[k] * o->t[k]);
         double held = fmax(shear + l->law->mu * fmin(normal, 0), 0);
-        double part = shear > 0 ? 2 * q->bond[VGCM_HALF_KS][k] * held / shear : 0;
-        brc_set(l->p->onset[j], area * fmax(normal, 0), area * part * w->s[k],
-                area * part * w->t[k]);
+        double part = shear > 0 ? held / shear : 0;
+        brc_set(l->p->onset[j], area * fmax(normal, 0), area * part * o->s[k],
+                area * part * o->t[k]);
     }
 }
 
@@ -128,14 +133,19 @@ VGCM_INLINE void vgcm_points4_write(const struct vgcm_loop *l, double *const poi
                                     const struct vgcm_points4 *q, const struct vgcm_point_lanes *w,
                                     brc_lanes area, brc_lanes dissipated)
 {
-    brc_lanes none = brc_lanes_all(0), fs = w->shear_ratio * w->s, ft = w->shear_ratio * w->t;
+    brc_lanes fs = w->shear_ratio * w->s, ft = w->shear_ratio * w->t;
     brc_mask grows = brc_lanes_less(w->damage_old, w->dn + w->ds);
     bool grow = brc_lanes_any(grows);
     if (!grow && !w->slides && !brc_lanes_any(w->loose))
         return;
+    brc_lanes none = brc_lanes_all(0);
     brc_mask begins = grows & ~brc_lanes_less(none, w->damage_old) & brc_lanes_less(none, area);
-    if (brc_lanes_any(begins))
-        vgcm_onset_put(l, point, q, w, begins);
+    if (grow && brc_lanes_any(begins)) {
+        /* by copies: what a call sees by its address cannot stay in registers before it */
+        brc_lanes kn = 2 * q->bond[VGCM_HALF_KN], ks = 2 * q->bond[VGCM_HALF_KS];
+        const struct vgcm_onset onset = {kn * w->un, ks * w->s, ks * w->t};
+        vgcm_onset_put(l, point, &onset, begins);
+    }
     brc_lanes own[] = {w->slip_s - (w->s - fs), w->slip_t - (w->t - ft), w->dn, w->ds};
     brc_lanes_transpose(own);
     for (int k = 0; k < BRC_LANES; k++)

@@ -14,6 +14,8 @@
 
 enum { LARGEST = 1 << 20, KEY_SIZE = 128 };
 
+/* Both ends are looked at: a summary appears whole or not at all (text_file.h), but a copy of one
+ * may have been cut, and another program's file may have the name. */
 int brc_summary_read(struct brc_context *ctx, const char *dir, char **text)
 {
     char path[BRC_PATH_SIZE];
@@ -53,6 +55,8 @@ void brc_summary_text(const char *summary, const char *key, char *value, size_t 
     copy_text(at ? at + strlen(line) : "", value, size);
 }
 
+/* Each result is one line, so that a note is looked for up to its end and is never that of the next
+ * one. */
 bool brc_summary_result(const char *summary, const char *name, double *value, char *note,
                         size_t size)
 {

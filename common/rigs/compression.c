@@ -4,6 +4,8 @@
 #include "common/rigs/crack_stress.h"
 #include "common/rigs/two_platens.h"
 
+/* Friction and no bond: platens that hold the ends would make a cone of the rock below them, and
+ * ends that slip freely are what the strength is defined by. */
 static int place(struct brc_sim *sim)
 {
     const struct brc_platen like = {.friction = sim->rig.params.friction};

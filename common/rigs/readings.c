@@ -43,6 +43,8 @@ static const char no_memory[] = "out of memory", no_break[] = "nothing has broke
 /* A few facets always have a plane in common. */
 enum { PLANE_FACETS = 10 };
 
+/* A value beside a note is none: who reads one without the other must not take a number of an
+ * unfinished test for its result. */
 static struct brc_measured measured(double value, const char *note)
 {
     return (struct brc_measured){note ? NAN : value, note};
@@ -59,6 +61,8 @@ static double work_to(const struct brc_rig *rig, size_t row)
     return work * rig->length[rig->axis];
 }
 
+/* Breaks alone: what softening points have lost before they are gone is in the ledger, which is
+ * kept for the present step and not along the curve. */
 static void read_peak(const struct brc_sim *sim, struct brc_measured out[2])
 {
     const struct brc_rig *rig = &sim->rig;
@@ -113,6 +117,8 @@ static void extremes(const struct brc_sim *sim, size_t first, size_t end, const 
     out[1] = measured(fmin(fmin(mean[0], mean[1]), mean[2]), note);
 }
 
+/* Both states by one operation of the test, so that a peak and what is left of it are measured over
+ * the same area. */
 static void read_stresses(const struct brc_sim *sim, struct brc_measured out[4])
 {
     const struct brc_rig *rig = &sim->rig;
@@ -127,6 +133,8 @@ static void read_stresses(const struct brc_sim *sim, struct brc_measured out[4])
 
 /* ---- cracks ---------------------------------------------------------------------------------- */
 
+/* Against the axis of the load, as geologists count dips against the horizontal: the test may be
+ * loaded along any axis. */
 static void read_angles(const struct brc_sim *sim, struct brc_measured out[2])
 {
     struct brc_crack_angles a;
@@ -150,6 +158,7 @@ static void read_plane(const struct brc_sim *sim, struct brc_measured out[2])
     out[1] = measured(asin(fmin(fabs(plane.normal[sim->rig.axis]), 1)), note);
 }
 
+/* b by magnitudes of energy, as every break has one; moments are zero where twins cancel. */
 static void read_acoustic(const struct brc_sim *sim, struct brc_measured out[3])
 {
     struct brc_acoustic a;
@@ -167,6 +176,8 @@ static void read_acoustic(const struct brc_sim *sim, struct brc_measured out[3])
     brc_acoustic_free(&a);
 }
 
+/* Dust is left out of the number of pieces and not of the mass: a largest piece of half of the rock
+ * is that, whatever has crumbled. */
 static void read_fragments(const struct brc_sim *sim, struct brc_measured out[2])
 {
     struct brc_sieve s;

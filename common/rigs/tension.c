@@ -4,6 +4,8 @@
 #include "common/rigs/elastic_moduli.h"
 #include "common/rigs/two_platens.h"
 
+/* A grip never fails, so that the rock does, and not the glue; held along the axis alone the ends
+ * may still contract, and the stress there is that of the middle. */
 static int place(struct brc_sim *sim)
 {
     bool is_axial = sim->rig.params.grip == 0;

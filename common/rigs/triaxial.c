@@ -54,6 +54,7 @@ static double pressure_asked(const struct brc_sim *sim)
     return ((const struct triaxial_params *)sim->rig.own)->pressure;
 }
 
+/* Without a pressure there are no sides to follow, and the test is compression to round-off. */
 static int place(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -96,6 +97,8 @@ static int drive(struct brc_sim *sim)
     return brc_two_platens_load(sim, force - t->pressure[0] * rig->section);
 }
 
+/* A row holds means over its steps, and so does the pressure beside it: in the ramp the two differ
+ * from step to step, and a row of one and a value of the other would not sum to sigma_1. */
 static int measure(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -123,6 +126,8 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
         (struct brc_measured){rig->memory ? brc_pressure_lost(sim, rig->memory) : 0, NULL};
 }
 
+/* The pressure acts on the sides as they are now, the platens' stress is over the first section: a
+ * specimen that bulges has less along z than this says, by its strain across. */
 static void stresses(const struct brc_sim *sim, size_t row, double sigma[3])
 {
     const struct columns *c = sim->rig.curve.own_columns;
@@ -145,6 +150,8 @@ static const char *end(const struct brc_sim *sim)
     return is_ramp(sim) ? NULL : brc_loading_end(sim);
 }
 
+/* The surface is made anew from the places of the grains; of its history only the pressure counts,
+ * by which the next step books the work. */
 static void restore(struct brc_sim *sim)
 {
     const struct triaxial *t = sim->rig.own_scalars;

@@ -94,6 +94,8 @@ static const struct brc_stage *stage_now(const struct brc_sim *sim)
 /* --- beginning ---------------------------------------------------------------------------------
  */
 
+/* The path is read here and thrown away, and once more by place: a mistake in it is told with the
+ * line of the case, before a specimen is made. */
 static int check(struct brc_context *ctx, const struct brc_test_params *t, const void *own)
 {
     const struct true_triaxial_params *params = own;
@@ -158,6 +160,7 @@ static bool moves_along(const struct brc_sim *sim, int k)
     return s->part[0][k] > 0 && !s->held[0][k];
 }
 
+/* Both platens of a pair, towards each other: the middle of the specimen stays. */
 static void set_speed(struct brc_sim *sim, int axis, double speed)
 {
     for (int i = pair_of[axis]; i < pair_of[axis] + 2; i++) {
@@ -195,6 +198,7 @@ static int place(struct brc_sim *sim)
     return 0;
 }
 
+/* Only axes that begin to move: the grains of a held one would run into its platens. */
 static void field(const struct brc_sim *sim, size_t grain, double v[3])
 {
     const struct brc_rig *rig = &sim->rig;
@@ -216,11 +220,14 @@ static double length_now(const struct brc_sim *sim, int axis)
     return sim->bodies.x[p[1].body][axis] - sim->bodies.x[p[0].body][axis];
 }
 
+/* By the platens and not by the grains: gaps at the corners are part of the area, as a platen of a
+ * machine has them under it, too. */
 static double area_now(const struct brc_sim *sim, int axis)
 {
     return length_now(sim, (axis + 1) % 3) * length_now(sim, (axis + 2) % 3);
 }
 
+/* Mean of both platens: they differ by what the grains between them are accelerated with. */
 static double stress_now(const struct brc_sim *sim, int axis)
 {
     const struct brc_platen *p = &sim->rig.platen[pair_of[axis]];
@@ -275,6 +282,8 @@ static int next_stage(struct brc_sim *sim, const double reached[3])
     return set_laws(sim, sigma);
 }
 
+/* Sums before a stage may end: the row that two stages share has each step in it once. z comes
+ * last, as its velocity is that of the rate which the load of this step has chosen. */
 static int drive(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -294,6 +303,8 @@ static int drive(struct brc_sim *sim)
     return 0;
 }
 
+/* stop_drop ends the last stage alone: in those before it a load that falls may be what the path
+ * asks for. */
 static const char *end(const struct brc_sim *sim)
 {
     const struct state *s = sim->rig.own_scalars;
@@ -305,6 +316,8 @@ static const char *end(const struct brc_sim *sim)
     return is_over ? "true_triaxial.stages" : brc_loading_fallen(sim) ? "test.stop_drop" : NULL;
 }
 
+/* The plan itself was read by place; strain_max is no part of the state, as each stage has its own.
+ */
 static void restore(struct brc_sim *sim)
 {
     set_strain_max(&sim->rig, stage_now(sim));
@@ -325,6 +338,8 @@ static double missed(const struct state *s, const double sigma[3], double steps)
     return worst;
 }
 
+/* Means of the step, like all of the curve: q of the means is not the mean of q, and smaller where
+ * stresses shake. */
 static void fill_row(struct brc_sim *sim, size_t row, double steps)
 {
     struct columns *c = sim->rig.curve.own_columns;
@@ -468,6 +483,7 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
     out[9] = (struct brc_measured){worst, NULL};
 }
 
+/* In the order of the axes: which of them is the largest may change along a path. */
 static void stresses(const struct brc_sim *sim, size_t row, double sigma[3])
 {
     const struct columns *c = sim->rig.curve.own_columns;

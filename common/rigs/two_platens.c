@@ -11,6 +11,7 @@
 
 static const double PLATENS_MEET = 1; /* strain */
 
+/* For tests of any sense: those that pull may go as far as they like. */
 int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *t, const void *own)
 {
     (void)own;
@@ -18,6 +19,8 @@ int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params 
     return brc_moduli_check(ctx, t);
 }
 
+/* Refused before a specimen is made; what an adaptive rate may still do on the way is found in
+ * brc_two_platens_load. */
 int brc_two_platens_check_closing(struct brc_context *ctx, const struct brc_test_params *t,
                                   const void *own)
 {
@@ -48,6 +51,9 @@ static void set_velocities(struct brc_sim *sim)
                   rig->sense * 0.5 * rig->rate * rig->length[rig->axis]);
 }
 
+/* Bodies of platens come behind all grains, in the order of the rig's list: contacts know them by
+ * that number alone. Across is any axis but their own, for surfaces that are not the same all
+ * round. */
 void brc_two_platens_face(struct brc_sim *sim, int first, int axis, const struct brc_platen *like)
 {
     struct brc_bodies *b = &sim->bodies;
@@ -106,6 +112,8 @@ void brc_two_platens_field(const struct brc_sim *sim, size_t grain, double v[3])
     v[k] = -rig->sense * rig->rate * (sim->bodies.x0[grain][k] - middle);
 }
 
+/* Over the first section, as the curve has it: where a specimen bulges, that is the larger stress,
+ * and the one that laboratories report. */
 void brc_two_platens_stresses(const struct brc_sim *sim, size_t row, double sigma[3])
 {
     const struct brc_rig *rig = &sim->rig;
