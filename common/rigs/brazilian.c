@@ -2,6 +2,7 @@
 /* Brazilian test: a disc, its axis along z, between two platens along y: planes, whole or of a
  * width, or hollow jaws. */
 #include "common/engine/sim.h"
+#include "common/rigs/end_face.h"
 #include "common/rigs/two_platens.h"
 
 #include <math.h>
@@ -70,10 +71,44 @@ static int check(struct brc_context *ctx, const struct brc_test_params *test, co
     return brc_two_platens_check_closing(ctx, test, own);
 }
 
+/* Part of a circle's area by which that of a disc may be off: a polygon of 12 sides is by 2 %. */
+static const double ROUND = 0.05;
+/* Part of the section by which flat faces may be off it, where their normals are z. */
+static const double PRISM = 0.01;
+
+/* Eq 16 holds for discs, and between strips for other prisms, too: cubes are split so (EN 12390-6).
+ */
+static int check_shape(struct brc_sim *sim)
+{
+    double low[3], high[3], mean = brc_two_platens_section(sim, 2);
+    struct brc_end_face face[2];
+    brc_specimen_extent(sim->specimen, low, high);
+    for (int k = 0; k < 2; k++)
+        brc_end_face_measure(sim->specimen, brc_end_of(sim->specimen, 2, k == 1), 1, &face[k]);
+    if (!(fabs(face[0].area - mean) < PRISM * mean && fabs(face[1].area - mean) < PRISM * mean))
+        BRC_FAIL(sim->ctx, BRC_ERR_GEOMETRY,
+                 "a Brazilian test needs a disc, or a prism, with flat faces across z, each of "
+                 "volume over thickness (%.3g m2) to %g: they have %.3g and %.3g m2; use another "
+                 "specimen, or turn it",
+                 mean, PRISM, face[0].area, face[1].area);
+    double circle = BRC_PI / 4 * diameter(sim) * diameter(sim), wide = high[0] - low[0];
+    bool is_round = fabs(mean / circle - 1) < ROUND && fabs(wide / diameter(sim) - 1) < ROUND;
+    if (is_round || sim->rig.params.plate_width > 0)
+        return 0;
+    BRC_FAIL(sim->ctx, BRC_ERR_GEOMETRY,
+             "a Brazilian test between %s needs a disc along z: the section is %.3g of the circle "
+             "as high as the specimen, which is %.3g m wide and %.3g m high; use a disc, or split "
+             "this prism between strips: test.plate_width: %.2g m",
+             ((const struct brazilian_params *)sim->rig.own)->platens == PLATENS_JAWS ? "jaws"
+                                                                                      : "planes",
+             mean / circle, wide, diameter(sim), 0.1 * diameter(sim));
+}
+
 static int place(struct brc_sim *sim)
 {
     const struct brc_test_params *test = &sim->rig.params;
     const struct brazilian_params *p = sim->rig.own;
+    BRC_TRY(check_shape(sim));
     struct brc_platen like = {.surface = BRC_SURFACE_PLANE, .friction = test->friction};
     if (p->platens == PLATENS_JAWS) {
         like.surface = BRC_SURFACE_CYLINDER;

@@ -5,27 +5,23 @@
  * Platens do not turn (platens.h), so a plate on a bending end would clamp it: its load is spread
  * over the facets instead, which may turn as the end does. A grain's facets carry a part of the
  * load in proportion to their area; as all parts point the same way, they are one force at the
- * middle of that area. Models that read no orientations leave them as they are: those of the loaded
- * grains follow their spin here, or moments about their centres would not be those of points that
- * move with them, and the turn of the end would be unknown. */
+ * middle of that area. */
 #include "common/rigs/dead_load.h"
 
 #include "common/base/pool.h"
-#include "common/engine/rotation.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
 #include "common/parallel/sums.h"
+#include "common/rigs/outside.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct brc_dead_load {
     size_t n;            /* loaded grains */
     int32_t *body;       /* [n] ascending */
     double *part;        /* [n] of the load, sum 1 */
     double (*place)[3];  /* [n] m, middle of the loaded area, at the start */
-    double (*on)[6];     /* [n] N, N m: what the load does to the grain now */
-    double (*before)[6]; /* [n] and a step earlier */
+    double (*last)[6];   /* [n] N, N m: what the load did to the grain in the last step */
     double middle[3];    /* m, mean place */
     double direction[3]; /* of the load at the start */
     double outward[3];   /* along the axis, out of the specimen */
@@ -62,8 +58,7 @@ int brc_dead_load_create(struct brc_sim *sim, struct brc_end end, const double d
     d->body = brc_pool_alloc(sim->ctx, &d->pool, n, sizeof *d->body);
     d->part = brc_pool_alloc(sim->ctx, &d->pool, n, sizeof *d->part);
     d->place = brc_pool_alloc(sim->ctx, &d->pool, n, sizeof *d->place);
-    d->on = brc_pool_alloc(sim->ctx, &d->pool, n, sizeof *d->on);
-    d->before = brc_pool_alloc(sim->ctx, &d->pool, n, sizeof *d->before);
+    d->last = brc_pool_alloc(sim->ctx, &d->pool, n, sizeof *d->last);
     if (d->pool.is_failed) {
         brc_dead_load_free(d);
         *out = NULL;
@@ -122,52 +117,46 @@ double brc_dead_load_turn(const struct brc_sim *sim, const struct brc_dead_load 
 }
 
 /* The end turns towards the load: so does the load, towards where the end looked away from. */
-static void find_forces(const struct brc_sim *sim, struct brc_dead_load *d, double newtons)
+static void find_force(const struct brc_sim *sim, const struct brc_dead_load *d, double newtons,
+                       double force[3])
 {
-    const struct brc_bodies *b = &sim->bodies;
-    double force[3];
     brc_scale(force, d->direction, newtons);
-    if (d->is_followed) {
-        double turn = brc_dead_load_turn(sim, d);
-        brc_scale(force, d->direction, newtons * cos(turn));
-        brc_axpy(force, -newtons * sin(turn), d->outward);
-    }
-    for (size_t i = 0; i < d->n; i++) {
-        double at[3];
-        brc_bodies_carry(b, (size_t)d->body[i], d->place[i], at);
-        brc_sub(at, at, b->x[d->body[i]]);
-        brc_scale(d->on[i], force, d->part[i]);
-        brc_cross(d->on[i] + 3, at, d->on[i]);
-    }
+    if (!d->is_followed)
+        return;
+    double turn = brc_dead_load_turn(sim, d);
+    brc_scale(force, d->direction, newtons * cos(turn));
+    brc_axpy(force, -newtons * sin(turn), d->outward);
 }
 
-/* By the trapezoid rule of ledger.h. */
-static double work_on(const struct brc_sim *sim, const struct brc_dead_load *d, size_t i)
+/* What a force on the whole end does to its grain i. */
+static void load_of(const struct brc_sim *sim, const struct brc_dead_load *d, size_t i,
+                    const double force[3], double load[6])
 {
-    const struct brc_bodies *b = &sim->bodies;
-    double mean[3], moment[3];
-    brc_add(mean, d->before[i], d->on[i]);
-    brc_add(moment, d->before[i] + 3, d->on[i] + 3);
-    return 0.5 * sim->dt * (brc_dot(mean, b->v[d->body[i]]) + brc_dot(moment, b->w[d->body[i]]));
+    double at[3];
+    brc_bodies_carry(&sim->bodies, (size_t)d->body[i], d->place[i], at);
+    brc_sub(at, at, sim->bodies.x[d->body[i]]);
+    brc_scale(load, force, d->part[i]);
+    brc_cross(load + 3, at, load);
 }
 
 void brc_dead_load_apply(struct brc_sim *sim, struct brc_dead_load *d, double newtons)
 {
-    struct brc_bodies *b = &sim->bodies;
-    bool is_oriented = sim->model.flags & BRC_MODEL_ORIENTED;
-    for (size_t i = 0; i < d->n && !is_oriented; i++)
-        brc_rotation_turn(b->q[d->body[i]], b->w[d->body[i]], sim->dt);
-    memcpy(d->before, d->on, d->n * sizeof *d->on);
-    find_forces(sim, d, newtons);
+    const struct brc_bodies *b = &sim->bodies;
+    double force[3], load[6];
+    for (size_t i = 0; i < d->n; i++)
+        brc_outside_turn(sim, d->body[i]);
+    find_force(sim, d, newtons, force);
     for (size_t i = 0; i < d->n; i++) {
-        brc_add(b->f[d->body[i]], b->f[d->body[i]], d->on[i]);
-        brc_add(b->t[d->body[i]], b->t[d->body[i]], d->on[i] + 3);
-        b->terms[i] = work_on(sim, d, i);
+        load_of(sim, d, i, force, load);
+        b->terms[i] = brc_outside_push(sim, d->body[i], load, d->last[i]);
     }
     sim->ledger.boundary += brc_sum_exact_of(b->terms, d->n, b->n_grains);
 }
 
 void brc_dead_load_restore(struct brc_sim *sim, struct brc_dead_load *d, double newtons)
 {
-    find_forces(sim, d, newtons);
+    double force[3];
+    find_force(sim, d, newtons, force);
+    for (size_t i = 0; i < d->n; i++)
+        load_of(sim, d, i, force, d->last[i]);
 }

@@ -44,17 +44,11 @@ void brc_moduli_rows(const struct brc_rig *rig, size_t *first, size_t *end)
     *end = i;
 }
 
-/* A line through rows, and the part of the variance that it explains: 1 of points on a line, and of
- * points that are all at one height, where there is nothing to explain. */
-struct fit {
-    double slope, r2;
-};
-
-static struct fit fit_line(const double *x, const double *y, size_t n)
+struct brc_line brc_line_fit(const double *x, const double *y, size_t n)
 {
     double c0, c1, cov00, cov01, cov11, left, all = gsl_stats_tss(y, 1, n);
     gsl_fit_linear(x, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &left);
-    return (struct fit){c1, all > 0 ? 1 - left / all : 1};
+    return (struct brc_line){c1, all > 0 ? 1 - left / all : 1, sqrt(all / (double)n)};
 }
 
 static struct brc_measured measured(double value, const char *note)
@@ -79,10 +73,10 @@ void brc_core_results(const struct brc_sim *sim, struct brc_measured *out)
     const double *stress = c->stress + first, *strain = c->strain_axial + first;
     const char *few = end - first == 2 ? two_rows : NULL;
     size_t n = end - first;
-    const struct fit none = {NAN, NAN};
-    struct fit e = axial ? none : fit_line(strain, stress, n);
-    struct fit nu = lateral ? none : fit_line(strain, c->strain_lateral + first, n);
-    struct fit platen = rows ? none : fit_line(c->strain + first, stress, n);
+    const struct brc_line none = {NAN, NAN, NAN};
+    struct brc_line e = axial ? none : brc_line_fit(strain, stress, n);
+    struct brc_line nu = lateral ? none : brc_line_fit(strain, c->strain_lateral + first, n);
+    struct brc_line platen = rows ? none : brc_line_fit(c->strain + first, stress, n);
     out[0] = measured(e.slope, axial);     /* eq:gt12:25 */
     out[1] = measured(-nu.slope, lateral); /* eq:gt12:24 */
     out[2] = measured(platen.slope, rows);

@@ -25,6 +25,14 @@ void brc_core_results(const struct brc_sim *sim, struct brc_measured *out);
 
 /* Rows of the curve between modulus_low and modulus_high of the peak: [*first, *end). */
 void brc_moduli_rows(const struct brc_rig *rig, size_t *first, size_t *end);
+/* A straight line through n points. */
+struct brc_line {
+    double slope;
+    double
+        r2; /* part of the variance of y that it explains; 1 where all points are at one height */
+    double varies; /* standard deviation of y */
+};
+struct brc_line brc_line_fit(const double *x, const double *y, size_t n);
 /* The keys of the moduli together. */
 int brc_moduli_check(struct brc_context *ctx, const struct brc_test_params *test);
 

@@ -12,10 +12,10 @@
 
 #include "common/base/lanes.h"
 #include "common/base/pool.h"
-#include "common/engine/rotation.h"
 #include "common/engine/sim.h"
 #include "common/geometry/vec.h"
 #include "common/parallel/sums.h"
+#include "common/rigs/outside.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +38,7 @@ struct grain {
     double diameter;              /* m, of a sphere of its volume */
     double centre[4], axes[3][4]; /* now */
     double area[4], moment[4];    /* m2, m3: force and moment of a unit pressure */
-    double before[2][3];          /* N, N m: what the pressure did to it in the last step */
+    double last[6];               /* N, N m: what the pressure did to it in the last step */
 };
 
 struct facet {
@@ -372,52 +372,31 @@ void brc_pressure_find(struct brc_sim *sim, struct brc_pressure *s)
     hand_to_grains(sim, s);
 }
 
-/* Models that read no orientations leave them as they are; here they say where a facet looks. */
-static void follow_spin(const struct brc_sim *sim, const struct brc_pressure *s)
+static void load_of(const struct brc_sim *sim, const struct grain *g, double p, double load[6])
 {
-    const struct brc_bodies *b = &sim->bodies;
-    if (sim->model.flags & BRC_MODEL_ORIENTED)
-        return;
-    for (size_t i = 0; i < s->n_grains; i++)
-        brc_rotation_turn(b->q[s->grain[i].body], b->w[s->grain[i].body], sim->dt);
-}
-
-static void set_before(const struct brc_sim *sim, struct grain *g, double p)
-{
-    brc_scale(g->before[0], sim->bodies.side_area[g->body], p);
-    brc_scale(g->before[1], sim->bodies.side_moment[g->body], p);
-}
-
-/* On one grain; returns the work over the step, by the trapezoid rule of ledger.h. */
-static double press(const struct brc_sim *sim, struct grain *g, double p)
-{
-    const struct brc_bodies *b = &sim->bodies;
-    double force[3], moment[3];
-    brc_copy(force, g->before[0]);
-    brc_copy(moment, g->before[1]);
-    set_before(sim, g, p);
-    brc_add(b->f[g->body], b->f[g->body], g->before[0]);
-    brc_add(b->t[g->body], b->t[g->body], g->before[1]);
-    brc_add(force, force, g->before[0]);
-    brc_add(moment, moment, g->before[1]);
-    return 0.5 * sim->dt * (brc_dot(force, b->v[g->body]) + brc_dot(moment, b->w[g->body]));
+    brc_scale(load, sim->bodies.side_area[g->body], p);
+    brc_scale(load + 3, sim->bodies.side_moment[g->body], p);
 }
 
 void brc_pressure_apply(struct brc_sim *sim, struct brc_pressure *s, double p)
 {
     const struct brc_bodies *b = &sim->bodies;
-    follow_spin(sim, s);
+    for (size_t i = 0; i < s->n_grains; i++)
+        brc_outside_turn(sim, s->grain[i].body);
     if (sim->step % FIND_STEPS == 0 || sim->step == 1)
         brc_pressure_find(sim, s);
-    for (size_t i = 0; i < s->n_grains; i++)
-        b->terms[i] = press(sim, &s->grain[i], p);
+    for (size_t i = 0; i < s->n_grains; i++) {
+        double load[6];
+        load_of(sim, &s->grain[i], p, load);
+        b->terms[i] = brc_outside_push(sim, s->grain[i].body, load, s->grain[i].last);
+    }
     sim->ledger.boundary += brc_sum_exact_of(b->terms, s->n_grains, b->n_grains);
 }
 
 void brc_pressure_restore(struct brc_sim *sim, struct brc_pressure *s, double p)
 {
     for (size_t i = 0; i < s->n_grains; i++)
-        set_before(sim, &s->grain[i], p);
+        load_of(sim, &s->grain[i], p, s->grain[i].last);
 }
 
 double brc_pressure_lost(const struct brc_sim *sim, const struct brc_pressure *s)

@@ -418,24 +418,22 @@ static void bulk_pair(const struct brc_rig *rig, size_t row, double pair[2])
     pair[1] = c->strain_axial[row] + 2 * c->strain_lateral[row];
 }
 
-/* Slope of stress by strain over rows, and by how much the stress varies (root mean square). */
-static double slope(const struct brc_rig *rig, size_t first, size_t end,
-                    void (*pair_of_row)(const struct brc_rig *, size_t, double[2]), double *varies)
+static struct brc_line fit(const struct brc_sim *sim, size_t first, size_t n,
+                           void (*pair_of_row)(const struct brc_rig *, size_t, double[2]))
 {
-    double mean[2] = {0, 0}, both = 0, strain = 0, stress = 0, pair[2], n = (double)(end - first);
-    for (size_t i = first; i < end; i++) {
-        pair_of_row(rig, i, pair);
-        mean[0] += pair[0] / n;
-        mean[1] += pair[1] / n;
+    struct brc_line line = {NAN, NAN, NAN};
+    double *stress = brc_alloc(sim->ctx, n, sizeof *stress), pair[2];
+    double *strain = brc_alloc(sim->ctx, n, sizeof *strain);
+    for (size_t i = 0; stress && strain && i < n; i++) {
+        pair_of_row(&sim->rig, first + i, pair);
+        stress[i] = pair[0];
+        strain[i] = pair[1];
     }
-    for (size_t i = first; i < end; i++) {
-        pair_of_row(rig, i, pair);
-        both += (pair[0] - mean[0]) * (pair[1] - mean[1]);
-        strain += (pair[1] - mean[1]) * (pair[1] - mean[1]);
-        stress += (pair[0] - mean[0]) * (pair[0] - mean[0]);
-    }
-    *varies = sqrt(stress / n);
-    return both / strain;
+    if (stress && strain)
+        line = brc_line_fit(strain, stress, n);
+    free(stress);
+    free(strain);
+    return line;
 }
 
 /* G by deviators, K by means: with both, E and nu do not hang on which stresses the path keeps. */
@@ -444,17 +442,18 @@ static void moduli(const struct brc_sim *sim, struct brc_measured out[3])
     const struct brc_rig *rig = &sim->rig;
     const char *note = brc_curve_why_no_peak(rig);
     size_t first = 0, end = 0;
-    double g = NAN, k = NAN, shears = 0, presses = 0;
+    struct brc_line shear = {0}, bulk = {0};
     if (note == NULL || note == brc_curve_no_peak) {
         bool is_gauged = rig->has_gauge[0] && rig->has_gauge[1] && rig->has_gauge[2];
         brc_moduli_rows(rig, &first, &end);
         note = end < first + 3 ? no_rows : is_gauged ? NULL : no_gauge;
     }
     if (!note) {
-        g = slope(rig, first, end, shear_pair, &shears) / 2;
-        k = slope(rig, first, end, bulk_pair, &presses);
+        shear = fit(sim, first, end - first, shear_pair);
+        bulk = fit(sim, first, end - first, bulk_pair);
     }
-    const char *both = note ? note : presses > P_CHANGES * shears ? NULL : no_pressure;
+    double g = note ? NAN : shear.slope / 2, k = bulk.slope;
+    const char *both = note ? note : bulk.varies > P_CHANGES * shear.varies ? NULL : no_pressure;
     out[0] = (struct brc_measured){both ? NAN : 9 * k * g / (3 * k + g), both};
     out[1] = (struct brc_measured){both ? NAN : (3 * k - 2 * g) / (6 * k + 2 * g), both};
     out[2] = (struct brc_measured){g, note};

@@ -9,7 +9,14 @@
 #include "common/rigs/elastic_moduli.h"
 #include "common/rigs/gauge.h"
 
+#include <math.h>
+#include <stdlib.h>
+
 static const double PLATENS_MEET = 1; /* strain */
+/* An end lies across the axis, to this many degrees, where its facets do in the mean (rough ends)
+ * or one of them does (the sides of a disc). One that is tilted stands on an edge, and what is
+ * measured is how the edge gives way. */
+static const double MOST_TILT = 10;
 
 /* For tests of any sense: those that pull may go as far as they like. */
 int brc_two_platens_check(struct brc_context *ctx, const struct brc_test_params *t, const void *own)
@@ -93,11 +100,70 @@ void brc_two_platens_begin(struct brc_sim *sim, int axis, double sense, double s
     }
 }
 
+/* What of the specimen's surface faces a platen. */
+struct end {
+    double sum[3]; /* m2, of its vector areas */
+    double cosine; /* of the facet that lies most nearly across the axis */
+    double on;     /* m2, of what lies on the platen */
+};
+
+static double tilt_of(const struct end *e, const double n[3])
+{
+    double mean = -brc_dot(e->sum, n) / brc_norm(e->sum);
+    return acos(fmin(fmax(mean, e->cosine), 1)) * 180 / BRC_PI;
+}
+
+static int check_end(struct brc_sim *sim, int platen, const struct end *e)
+{
+    const struct brc_platen *p = &sim->rig.platen[platen];
+    const char *where = platen == 0 ? "lower" : "upper", *kind = sim->rig.type->name;
+    char axis = "xyz"[sim->rig.axis];
+    if (brc_norm(e->sum) == 0)
+        BRC_FAIL(sim->ctx, BRC_ERR_GEOMETRY,
+                 "none of the specimen's surface faces the platen at the %s end of %c within 30 "
+                 "degrees, and test.kind: %s loads it there: use a specimen with ends across %c",
+                 where, axis, kind, axis);
+    if (tilt_of(e, p->n) > MOST_TILT)
+        BRC_FAIL(sim->ctx, BRC_ERR_GEOMETRY,
+                 "the %s end of the specimen along %c is tilted by %.3g degrees against its "
+                 "platen, allowed %g: turn the specimen so that its ends lie across %c, as "
+                 "test.kind: %s loads it along %c",
+                 where, axis, tilt_of(e, p->n), MOST_TILT, axis, kind, axis);
+    if (p->bonding != BRC_BONDING_NONE && e->on == 0)
+        BRC_FAIL(sim->ctx, BRC_ERR_GEOMETRY,
+                 "no facet lies in the plane of the %s end along %c, so that its platen has "
+                 "nothing to hold: test.kind: %s needs flat ends",
+                 where, axis, kind);
+    return 0;
+}
+
+/* A specimen that cannot carry the load would run to its last step, or fly. */
+static int check_ends(struct brc_sim *sim)
+{
+    const struct brc_facets *f = &sim->specimen->facets;
+    struct end end[2] = {0};
+    struct brc_facing *facing;
+    size_t n_facing;
+    BRC_TRY(brc_platens_facing(sim, &facing, &n_facing));
+    for (size_t i = 0; i < n_facing; i++) {
+        struct end *e = &end[(size_t)facing[i].body - sim->bodies.n_grains];
+        const double *normal = f->normal[facing[i].facet],
+                     *n = brc_sim_platen(sim, facing[i].body)->n;
+        brc_axpy(e->sum, f->area[facing[i].facet], normal);
+        e->cosine = fmax(e->cosine, -brc_dot(normal, n));
+        e->on += facing[i].is_on ? f->area[facing[i].facet] : 0;
+    }
+    free(facing);
+    BRC_TRY(check_end(sim, 0, &end[0]));
+    return check_end(sim, 1, &end[1]);
+}
+
 int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
                           const struct brc_platen *like)
 {
     brc_two_platens_face(sim, 0, axis, like);
     brc_two_platens_begin(sim, axis, sense, section);
+    BRC_TRY(check_ends(sim));
     set_velocities(sim);
     return 0;
 }

@@ -10,7 +10,8 @@
 
 /* Places the platens at the specimen's ends along axis, shaped and bonded as `like` is, and gives
  * them and the grains the velocity field of a uniform strain at the starting rate. sense: +1 where
- * they approach. The load is divided by the section [m2]. */
+ * they approach. The load is divided by the section [m2]. Ends that do not face their platens, are
+ * tilted, or cannot be held are an error. */
 int brc_two_platens_place(struct brc_sim *sim, int axis, double sense, double section,
                           const struct brc_platen *like);
 /* Parts of it: platens first and first + 1 at the ends along an axis; and lengths, gauge, starting

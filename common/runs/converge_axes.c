@@ -319,12 +319,13 @@ int brc_converge_read_axes(struct brc_context *ctx, const struct brc_converge_st
 
 /* ---- all of a model ------------------------------------------------------------------------ */
 
-/* The reference and its coarser likes, as their names say. Where a model has approximations of its
- * own the reference does without. */
+/* The reference and its coarser likes, as their names say; a test without a rate has a finer step
+ * alone. Where a model has approximations of its own the reference does without. */
 static void put_reference(struct brc_converge_setting *s, const struct brc_converge_options *o,
                           const struct brc_converge_model *m, int which)
 {
-    double loading = (which == BRC_CONVERGE_AT_LOADING ? 2.0 : 1.0) / o->refine;
+    bool is_driven = has_rate(o->run.run_case);
+    double loading = is_driven ? (which == BRC_CONVERGE_AT_LOADING ? 2.0 : 1.0) / o->refine : 1;
     double step = which == BRC_CONVERGE_AT_REFERENCE ? REFERENCE_STEP : 1;
     *s = make("reference", BRC_CONVERGE_REFERENCE, 1);
     put_step(s, o->run.run_case, m, step);
@@ -335,7 +336,10 @@ static void put_reference(struct brc_converge_setting *s, const struct brc_conve
     if (brc_params_find(m->model->params, "evaluation"))
         add_line(s, "%s.evaluation=literal", m->model->name);
     s->weight = 1 / (loading * step);
-    snprintf(s->label, sizeof s->label, "loading x 1/%g step x %g", 1 / loading, step);
+    if (is_driven)
+        snprintf(s->label, sizeof s->label, "loading x 1/%g step x %g", 1 / loading, step);
+    else
+        snprintf(s->label, sizeof s->label, "step x %g", step);
 }
 
 /* They lie at fixed places, by which report and table find them; so one that is out of range ends

@@ -82,9 +82,11 @@ expect 0 "its load is given, so the axis loading is left out" "$breccia" converg
     --observable E_c --axes loading,step --seeds 1 --refine 2 -o beam
 "$breccia" converge beam.yaml --observable E_c --axes loading,step --seeds 1 --refine 2 -o beam --resume 2>&1 |
     grep '^case ' | grep -q 'ended' && fail "a cantilever at rest is not counted as ended"
+grep -q '^reference *step x 0.5 ' beam/converge.txt && ! grep -q 'loading x' beam/converge.txt ||
+    { fail "a reference without a rate does not say what it varies"; cat beam/converge.txt; }
 
 # a record of another test, and one that is damaged
-expect 3 "holds other results" "$breccia" converge case.yaml --set test.kind=brazilian --seeds 1 \
+expect 3 "holds other results" "$breccia" converge case.yaml --set test.kind=tension --seeds 1 \
     -o all --resume
 size=$(wc -c <all/converge_runs.csv)
 { head -c 5000 /dev/zero | tr '\0' x; echo; } | cat all/converge_runs.csv - before.csv >long

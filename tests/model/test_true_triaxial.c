@@ -241,6 +241,52 @@ static void a_confined_box_can_be_released(void **state)
     }
 }
 
+/* What a servo misses in a row: of an isotropic stage sigma_x and sigma_y are asked to be sigma_z.
+ */
+static void what_a_servo_misses_is_told(void **state)
+{
+    struct fixture *f = *state;
+    for (int m = 0; m < brc_registry_count(); m++) {
+        double largest = 0, worst = 0;
+        box(f, 1);
+        start(f, brc_registry_at(m), "", "isotropic to 20 MPa", "target: 0.2");
+        run(f, 20000);
+        const double *x = column(f, "sigma_x"), *y = column(f, "sigma_y"),
+                     *z = column(f, "sigma_z"), *missed = column(f, "missed");
+        for (size_t i = 0; i < f->sim.rig.curve.table.n; i++) {
+            largest = fmax(largest, fmax(x[i], fmax(y[i], z[i])));
+            double scale = fmax(z[i], 0.01 * largest);
+            CHECK_NEAR(missed[i], fmax(fabs(x[i] - z[i]), fabs(y[i] - z[i])) / scale, 1e-9, 0);
+            worst = fmax(worst, missed[i]);
+        }
+        print_message("%s: missed by %.3g\n", brc_registry_at(m)->name, worst);
+        assert_true(worst > 1e-4);
+        CHECK_NEAR(result(f, "servo_missed"), worst, 0, 0);
+    }
+}
+
+/* Nothing is asked of an axis that is held, also in the row in which its servo sets in. */
+static void a_held_axis_misses_nothing(void **state)
+{
+    struct fixture *f = *state;
+    for (int m = 0; m < brc_registry_count(); m++) {
+        box(f, 1);
+        start(f, brc_registry_at(m), "",
+              "uniaxial strain to strain 0.0006, lateral constant to strain 0.0006",
+              "sample_steps: 16");
+        run(f, 20000);
+        const double *missed = column(f, "missed"), *x = column(f, "sigma_x");
+        size_t second = (size_t)f->sim.rig.stage_row;
+        assert_true(second > 3 && f->sim.rig.stage == 1 && f->sim.rig.stage_step % 16 > 1);
+        for (size_t i = 0; i < second; i++)
+            CHECK_NEAR(missed[i], 0, 0, 0);
+        print_message("%s: sigma_x %.3g, missed %.3g\n", brc_registry_at(m)->name, x[second],
+                      missed[second]);
+        assert_true(x[second] > 1e5);
+        CHECK_BETWEEN(missed[second], 0, 0.02);
+    }
+}
+
 static void what_is_no_box_is_refused(void **state)
 {
     struct fixture *f = *state;
@@ -269,6 +315,8 @@ int main(void)
                                        FIXTURE_TEST(cubes_give_their_springs),
                                        FIXTURE_TEST(stiffness_and_stress_scale_together),
                                        FIXTURE_TEST(a_confined_box_can_be_released),
+                                       FIXTURE_TEST(what_a_servo_misses_is_told),
+                                       FIXTURE_TEST(a_held_axis_misses_nothing),
                                        FIXTURE_TEST(what_is_no_box_is_refused),
                                        FIXTURE_TEST(a_path_without_a_change_along_z_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);

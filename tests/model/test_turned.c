@@ -24,7 +24,7 @@ static struct {
     struct brc_rig_type seen;        /* and what the engine is given for it */
     const struct brc_specimen *made; /* before it was turned */
     double forth[3][3], back[3][3], back_turn[4];
-    struct brc_platen placed[BRC_MAX_PLATENS];
+    double n[BRC_MAX_PLATENS][3]; /* of the platens, in the axes of the test */
 } world;
 
 static void turn_all(double (*a)[3], size_t n, double m[3][3])
@@ -79,7 +79,8 @@ static int place(struct brc_sim *sim)
     int code = world.type->place(sim);
     sim->specimen = specimen;
     sim->rig.type = &world.seen;
-    memcpy(world.placed, sim->rig.platen, sizeof world.placed);
+    for (int i = 0; i < sim->rig.n_platens; i++)
+        brc_copy(world.n[i], sim->rig.platen[i].n);
     memcpy(b->x, x, n * sizeof *x);
     memcpy(b->q, q, n * sizeof *q);
     turn_all(b->v, n, world.forth);
@@ -102,16 +103,17 @@ static int drive_along_axes(struct brc_sim *sim)
 static int measure(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
-    struct brc_platen now[BRC_MAX_PLATENS];
-    double(*x)[3] = malloc(b->n * sizeof *x);
+    double(*x)[3] = malloc(b->n * sizeof *x), now[BRC_MAX_PLATENS][3];
     memcpy(x, b->x, b->n * sizeof *x);
-    memcpy(now, sim->rig.platen, sizeof now);
     turn_all(b->x, b->n, world.back);
-    for (int i = 0; i < sim->rig.n_platens; i++)
-        brc_copy(sim->rig.platen[i].n, world.placed[i].n);
+    for (int i = 0; i < sim->rig.n_platens; i++) {
+        brc_copy(now[i], sim->rig.platen[i].n);
+        brc_copy(sim->rig.platen[i].n, world.n[i]);
+    }
     int code = world.type->measure(sim);
     memcpy(b->x, x, b->n * sizeof *x);
-    memcpy(sim->rig.platen, now, sizeof now);
+    for (int i = 0; i < sim->rig.n_platens; i++)
+        brc_copy(sim->rig.platen[i].n, now[i]);
     free(x);
     return code;
 }
@@ -120,7 +122,7 @@ static void field(const struct brc_sim *sim, size_t grain, double v[3])
 {
     struct brc_sim as_placed = *sim;
     for (int i = 0; i < sim->rig.n_platens; i++)
-        brc_copy(as_placed.rig.platen[i].n, world.placed[i].n);
+        brc_copy(as_placed.rig.platen[i].n, world.n[i]);
     world.type->field(&as_placed, grain, v);
     turn_all((double(*)[3])v, 1, world.forth);
 }
