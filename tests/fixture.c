@@ -465,6 +465,27 @@ void fixture_stress(const struct fixture *f, double stress[3][3])
     }
 }
 
+struct brc_result fixture_result(const struct fixture *f, const char *name)
+{
+    struct brc_result all[BRC_MAX_RESULTS];
+    int n = brc_rigs_results(&f->sim, all);
+    for (int i = 0; i < n; i++)
+        if (strcmp(all[i].name, name) == 0)
+            return all[i];
+    fail_msg("no result %s", name);
+    return all[0];
+}
+
+const double *fixture_column(const struct fixture *f, const char *name)
+{
+    const struct brc_table *t = &f->sim.rig.curve.own;
+    for (int i = 0; i < t->set.n; i++)
+        if (strcmp(t->set.fields[i].name, name) == 0)
+            return brc_table_column(t, i);
+    fail_msg("no column %s", name);
+    return NULL;
+}
+
 size_t fixture_row(const struct fixture *f, int32_t a, int32_t b)
 {
     int64_t row = brc_contacts_find(&f->sim.pairs, a, b);

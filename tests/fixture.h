@@ -115,6 +115,9 @@ double fixture_third_law(const struct fixture *f);
 double fixture_largest_force(const struct fixture *f);
 /* Mean stress sum (x_b - x_a) f / V of the grain pairs, tension positive. */
 void fixture_stress(const struct fixture *f, double stress[3][3]);
+/* A result of the test by its name, and a column of its own; fail when there is none. */
+struct brc_result fixture_result(const struct fixture *f, const char *name);
+const double *fixture_column(const struct fixture *f, const char *name);
 /* Row of two grains; fails when there is none. */
 size_t fixture_row(const struct fixture *f, int32_t a, int32_t b);
 

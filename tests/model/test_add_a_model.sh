@@ -16,12 +16,16 @@ $make all >log 2>&1 || { cat log; exit 1; }
 
 # sections 2 to 7
 awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' docs/add-a-model.md >spring/model.c
-$make all "$BUILD/tests/model/test_conformance" >log 2>&1 || { cat log; exit 1; }
+suite="$BUILD/tests/model/test_conformance"
+$make all "$suite" "${suite}_energy" "${suite}_bits" >log 2>&1 || { cat log; exit 1; }
 "$BUILD/breccia" params spring | grep -q modulus
 if command -v clang-format >/dev/null; then
     clang-format --dry-run -Werror spring/model.c
 fi
-"$BUILD/tests/model/test_conformance" >log 2>&1 || { cat log; exit 1; }
+for part in energy bits; do
+    "${suite}_$part" >log 2>&1 || { cat log; exit 1; }
+done
+"$suite" >log 2>&1 || { cat log; exit 1; }
 grep -q '^spring: turned' log || { echo "the suite did not run over the new model"; exit 1; }
 grep '^    build/breccia run' docs/add-a-model.md | sed "s,build/breccia,$BUILD/breccia," >run
 [ "$(wc -l <run)" -eq 1 ]

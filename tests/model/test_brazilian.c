@@ -41,17 +41,6 @@ static void load_disc(struct fixture *f, const struct brc_model *model, int side
         fixture_steps(f, 1);
 }
 
-static double result(const struct fixture *f, const char *name)
-{
-    struct brc_result all[BRC_MAX_RESULTS];
-    int n = brc_rigs_results(&f->sim, all);
-    for (int i = 0; i < n; i++)
-        if (strcmp(all[i].name, name) == 0)
-            return all[i].value;
-    fail_msg("no result %s", name);
-    return 0;
-}
-
 /* Force of an elastic disc at a strain. */
 static double load_at(struct fixture *f, int sides)
 {
@@ -86,8 +75,8 @@ static void crush(struct fixture *f, const char *model, int sides, const char *s
         for (int k = 0; k < 2; k++) {
             load_disc(f, brc_registry_find(model), both[k], settings,
                       "strain_max: 0.02; stop_drop: 0.8");
-            mean[k][0] += result(f, "strength") / n;
-            mean[k][1] += result(f, "S") / n;
+            mean[k][0] += fixture_result(f, "strength").value / n;
+            mean[k][1] += fixture_result(f, "S").value / n;
         }
     }
     for (int k = 0; k < 2; k++)

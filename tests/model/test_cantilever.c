@@ -12,17 +12,6 @@
 
 static int finest = 8;
 
-static double value_of(const struct fixture *f, const char *name)
-{
-    struct brc_result all[BRC_MAX_RESULTS];
-    int n = brc_rigs_results(&f->sim, all);
-    for (int i = 0; i < n; i++)
-        if (strcmp(all[i].name, name) == 0)
-            return all[i].value;
-    fail_msg("no result %s", name);
-    return 0;
-}
-
 /* A beam of 5 x 1 x 1 cm of cubes, n of them across. */
 static void cut_beam(struct fixture *f, int n)
 {
@@ -55,13 +44,13 @@ static void cubes_of_vgcm_bend_as_timoshenko_says(void **state)
     for (int n = finest / 2, k = 0; n <= finest; n *= 2, k++) {
         cut_beam(f, n);
         bend(f, "vgcm", "e_bar: 50 GPa; eta: 1; points: exact", "load: 1 N; poisson: 0");
-        double exact = value_of(f, "E_c_shear") / 50e9;
+        double exact = fixture_result(f, "E_c_shear").value / 50e9;
         CHECK_BETWEEN(brc_ledger_residual(&f->sim.ledger), 0, 1e-11);
-        CHECK_NEAR(value_of(f, "root_force"), 1, 2e-4, 0);
-        CHECK_NEAR(value_of(f, "root_moment"), 0.05, 2e-4 * 0.05, 0);
-        assert_true(value_of(f, "E_c") < value_of(f, "E_c_shear"));
+        CHECK_NEAR(fixture_result(f, "root_force").value, 1, 2e-4, 0);
+        CHECK_NEAR(fixture_result(f, "root_moment").value, 0.05, 2e-4 * 0.05, 0);
+        assert_true(fixture_result(f, "E_c").value < fixture_result(f, "E_c_shear").value);
         bend(f, "vgcm", "e_bar: 50 GPa; eta: 1; points: one", "load: 1 N; poisson: 0");
-        missed[k] = 1 - value_of(f, "E_c_shear") / 50e9;
+        missed[k] = 1 - fixture_result(f, "E_c_shear").value / 50e9;
         print_message("%d cubes: all points %.5f of E, one point %.5f, discrete section %.5f\n", n,
                       exact, 1 - missed[k], 1 - 1.0 / (n * n));
         CHECK_NEAR(exact, 1, 0.01, 0);
@@ -284,7 +273,7 @@ static void polyhedra_bend_as_their_springs_do(void **state)
              "evaluation: literal",
              RADIUS, KN, BN, BT, BM);
     bend(f, "polyhedra", text, "load: 0.1 N; tolerance: 1e-5");
-    double tip = value_of(f, "tip"), expected = solve_beam(f, 0.1);
+    double tip = fixture_result(f, "tip").value, expected = solve_beam(f, 0.1);
     print_message("tip %.6g m, springs %.6g m: %.5f\n", tip, expected, tip / expected);
     CHECK_NEAR(tip, expected, 0, 1e-4);
 }
@@ -335,7 +324,7 @@ static void a_polyhedron_with_flat_ends_bends(void **state)
     unlink(path);
     bend(f, "vgcm", "", "load: 1 N");
     assert_int_equal(f->sim.rig.axis, 1);
-    double flat = value_of(f, "E_c_shear");
+    double flat = fixture_result(f, "E_c_shear").value;
     CHECK_BETWEEN(flat, 20e9, 80e9);
 }
 

@@ -228,17 +228,6 @@ static void scale_does_not_matter(void **state)
         test_free(force[s]);
 }
 
-static double result(const struct fixture *f, const char *name)
-{
-    struct brc_result r[BRC_MAX_RESULTS];
-    int n = brc_rigs_results(&f->sim, r);
-    for (int i = 0; i < n; i++)
-        if (strcmp(r[i].name, name) == 0)
-            return r[i].value;
-    fail_msg("no result %s", name);
-    return NAN;
-}
-
 /* E and nu of random packs against the uniform-strain estimate, which is an upper bound of E that
  * relaxation of a real pack comes near to. */
 static void uniform_strain_estimate(void **state)
@@ -262,8 +251,8 @@ static void uniform_strain_estimate(void **state)
                         "modulus_high: 1",
                         "");
             fixture_steps(f, 1000);
-            modulus += result(f, "E") / 48.8e9 / N_SAMPLES;
-            poisson += result(f, "nu") / N_SAMPLES;
+            modulus += fixture_result(f, "E").value / 48.8e9 / N_SAMPLES;
+            poisson += fixture_result(f, "nu").value / N_SAMPLES;
         }
         double estimate = (2 + 3 * eta) / (4 + eta), ratio = (1 - eta) / (4 + eta);
         print_message("eta %g: E/E-bar %.3f, estimate %.3f; nu %.3f, estimate %.3f\n", eta, modulus,

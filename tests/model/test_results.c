@@ -18,27 +18,16 @@ static void load(struct fixture *f, const char *model, const char *test, int mos
         fixture_steps(f, 1);
 }
 
-static struct brc_result result(const struct fixture *f, const char *name)
-{
-    struct brc_result all[BRC_MAX_RESULTS];
-    int n = brc_rigs_results(&f->sim, all);
-    for (int i = 0; i < n; i++)
-        if (strcmp(all[i].name, name) == 0)
-            return all[i];
-    fail_msg("no result %s", name);
-    return all[0];
-}
-
 static void check_measured(const struct fixture *f, const char *name)
 {
-    struct brc_result r = result(f, name);
+    struct brc_result r = fixture_result(f, name);
     if (r.note || !isfinite(r.value))
         fail_msg("%s = %g: %s", name, r.value, r.note ? r.note : "without a note");
 }
 
 static void check_missing(const struct fixture *f, const char *name, const char *note)
 {
-    struct brc_result r = result(f, name);
+    struct brc_result r = fixture_result(f, name);
     if (!isnan(r.value) || !r.note || !strstr(r.note, note))
         fail_msg("%s = %g, expected none: %s; the note is %s", name, r.value, note, r.note);
 }
@@ -54,7 +43,7 @@ static void a_load_that_rises_has_no_strength(void **state)
     check_missing(f, "ci_broken", "the load was still rising");
     check_measured(f, "E");
     check_measured(f, "nu");
-    CHECK_BETWEEN(result(f, "E_r2").value, 0.99, 1); /* elastic */
+    CHECK_BETWEEN(fixture_result(f, "E_r2").value, 0.99, 1); /* elastic */
     assert_true(f->sim.rig.force_peak > 0);
     load(f, weak, pull, 1000);
     assert_true(f->sim.events.table.n > 0);
@@ -150,9 +139,9 @@ static void moduli_say_how_well_they_fit(void **state)
         yy += (c->stress[i] - y) * (c->stress[i] - y);
         xy += (c->strain_axial[i] - x) * (c->stress[i] - y);
     }
-    CHECK_NEAR(result(f, "E").value, xy / xx, 0, 1e-9);
-    CHECK_NEAR(result(f, "E_r2").value, xy * xy / (xx * yy), 0, 1e-9);
-    assert_true(result(f, "E_r2").value < 0.99);
+    CHECK_NEAR(fixture_result(f, "E").value, xy / xx, 0, 1e-9);
+    CHECK_NEAR(fixture_result(f, "E_r2").value, xy * xy / (xx * yy), 0, 1e-9);
+    assert_true(fixture_result(f, "E_r2").value < 0.99);
 }
 
 /* Cracks of which the first is smaller than a hundredth of what is broken at the peak; one that
@@ -172,7 +161,7 @@ static void the_first_percent_of_the_cracks_has_a_stress(void **state)
     }
     const struct brc_curve *c = &f->sim.rig.curve;
     assert_true(c->step[2] == 30 && c->force[5] == 1);
-    CHECK_NEAR(result(f, "ci_broken").value, c->stress[2], 0, 1e-12);
+    CHECK_NEAR(fixture_result(f, "ci_broken").value, c->stress[2], 0, 1e-12);
 }
 
 /* `stop_drop: 0` is never, also when the specimen pulls the platens together. */

@@ -272,16 +272,6 @@ static void no_pressure_is_compression(void **state)
     }
 }
 
-static const double *column(const struct fixture *f, const char *name)
-{
-    const struct brc_table *t = &f->sim.rig.curve.own;
-    for (int i = 0; i < t->set.n; i++)
-        if (strcmp(t->set.fields[i].name, name) == 0)
-            return brc_table_column(t, i);
-    fail_msg("no column %s", name);
-    return NULL;
-}
-
 /* The pressure follows the platens up to what was asked, and stays; energies balance. */
 static void the_ramp_is_isotropic(void **state)
 {
@@ -299,7 +289,8 @@ static void the_ramp_is_isotropic(void **state)
         assert_true(f->sim.rig.rate < 0.2 * rate); /* a stage begins as a test does */
         fixture_steps(f, 400);
         const struct brc_curve *c = &f->sim.rig.curve;
-        const double *sigma_1 = column(f, "sigma_1"), *sigma_3 = column(f, "sigma_3");
+        const double *sigma_1 = fixture_column(f, "sigma_1"),
+                     *sigma_3 = fixture_column(f, "sigma_3");
         size_t ramp = (size_t)f->sim.rig.stage_row;
         for (size_t i = 0; i < c->table.n; i++) {
             assert_true(sigma_3[i] <= 10e6);

@@ -35,27 +35,6 @@ static void run(struct fixture *f, int most)
     assert_non_null(brc_rigs_end(&f->sim));
 }
 
-static const double *column(const struct fixture *f, const char *name)
-{
-    const struct brc_table *t = &f->sim.rig.curve.own;
-    for (int i = 0; i < t->set.n; i++)
-        if (strcmp(t->set.fields[i].name, name) == 0)
-            return brc_table_column(t, i);
-    fail_msg("no column %s", name);
-    return NULL;
-}
-
-static double result(const struct fixture *f, const char *name)
-{
-    struct brc_result r[BRC_MAX_RESULTS];
-    int n = brc_rigs_results(&f->sim, r);
-    for (int i = 0; i < n; i++)
-        if (strcmp(r[i].name, name) == 0)
-            return r[i].value;
-    fail_msg("no result %s", name);
-    return NAN;
-}
-
 /* From 100 kPa to 210 MPa, stiff and soft, bonded and not: a row's mean stress is what was asked
  * for within half a percent, but for the first rows, in which the platens find their contacts. */
 static void the_servo_needs_no_tuning(void **state)
@@ -78,7 +57,7 @@ static void the_servo_needs_no_tuning(void **state)
         box(f, 1);
         start(f, specimens[i].model, specimens[i].settings, specimens[i].stages, "");
         run(f, 30000);
-        const double *missed = column(f, "missed"), *p = column(f, "p");
+        const double *missed = fixture_column(f, "missed"), *p = fixture_column(f, "p");
         size_t n = f->sim.rig.curve.table.n, second = (size_t)f->sim.rig.stage_row;
         double worst = 0, before = 0;
         for (size_t row = 3; row < n; row++)
@@ -106,7 +85,8 @@ static void stress_paths_obey_hooke(void **state)
     start(f, &brc_model_vgcm, elastic, "isotropic to 20 MPa, lateral constant to strain 5e-4",
           "modulus_high: 1");
     run(f, 20000);
-    double E = result(f, "E"), nu = result(f, "nu"), G = result(f, "G");
+    double E = fixture_result(f, "E").value, nu = fixture_result(f, "nu").value,
+           G = fixture_result(f, "G").value;
     print_message("E %.4g GPa, nu %.4f, G %.4g GPa\n", E * 1e-9, nu, G * 1e-9);
     CHECK_NEAR(G, E / (2 * (1 + nu)), 1e-3 * G, 0);
     for (int path = 0; path < 4; path++) {
@@ -120,8 +100,8 @@ static void stress_paths_obey_hooke(void **state)
         run(f, 20000);
         size_t last = f->sim.rig.curve.table.n - 1;
         const struct brc_curve *c = &f->sim.rig.curve;
-        double x = column(f, "sigma_x")[last], y = column(f, "sigma_y")[last],
-               z = column(f, "sigma_z")[last];
+        double x = fixture_column(f, "sigma_x")[last], y = fixture_column(f, "sigma_y")[last],
+               z = fixture_column(f, "sigma_z")[last];
         double axial = (z - nu * (x + y)) / E, across = ((x + y) * (1 - nu) - 2 * nu * z) / (2 * E);
         double size = fabs(axial) + fabs(across);
         print_message("%s: axial %.5g (%.5g), across %.5g (%.5g)\n", stages, c->strain_axial[last],
@@ -144,14 +124,14 @@ static void uniaxial_strain_gives_k0_and_m(void **state)
         start(f, &brc_model_vgcm, elastic, "isotropic to 20 MPa, lateral constant to strain 5e-4",
               "modulus_high: 1");
         run(f, 20000);
-        double E = result(f, "E"), nu = result(f, "nu");
+        double E = fixture_result(f, "E").value, nu = fixture_result(f, "nu").value;
         double G = E / (2 * (1 + nu)), lame = 2 * G * nu / (1 - 2 * nu);
         start(f, &brc_model_vgcm, elastic, "uniaxial strain to strain 5e-4", "");
         run(f, 20000);
         const struct brc_curve *c = &f->sim.rig.curve;
         size_t last = c->table.n - 1;
-        double x = column(f, "sigma_x")[last], y = column(f, "sigma_y")[last],
-               z = column(f, "sigma_z")[last], axial = c->strain_axial[last],
+        double x = fixture_column(f, "sigma_x")[last], y = fixture_column(f, "sigma_y")[last],
+               z = fixture_column(f, "sigma_z")[last], axial = c->strain_axial[last],
                lateral = c->strain_lateral[last], volume = axial + 2 * lateral;
         print_message("seed %d: E %.4g GPa, nu %.4f; K0 %.4f (%.4f), lateral/axial %.4f; along "
                       "%.4f, across %.4f of Hooke's\n",
@@ -179,8 +159,8 @@ static void a_platen_without_bonds_cannot_pull(void **state)
     char own[200];
     snprintf(own, sizeof own, "stages: %s; bonds: normal", stages);
     fixture_test(f, &brc_model_vgcm, elastic, "kind: true_triaxial", own, "");
-    while (column(f, "sigma_x") == NULL || f->sim.rig.curve.table.n < 2 ||
-           column(f, "sigma_x")[f->sim.rig.curve.table.n - 1] > -1e6) {
+    while (fixture_column(f, "sigma_x") == NULL || f->sim.rig.curve.table.n < 2 ||
+           fixture_column(f, "sigma_x")[f->sim.rig.curve.table.n - 1] > -1e6) {
         fixture_steps(f, 1);
         assert_true(f->sim.step < 20000);
     }
@@ -198,7 +178,7 @@ static void cubes_give_their_springs(void **state)
           "isotropic to 10 MPa", "");
     run(f, 20000);
     size_t last = f->sim.rig.curve.table.n - 1;
-    const double *p = column(f, "p"), *eps = column(f, "eps_v");
+    const double *p = fixture_column(f, "p"), *eps = fixture_column(f, "eps_v");
     CHECK_NEAR((p[last] - p[last / 2]) / (eps[last] - eps[last / 2]), bulk, 0.01 * bulk, 0);
 }
 
@@ -217,7 +197,7 @@ static void stiffness_and_stress_scale_together(void **state)
                      : "isotropic to 8 MPa, p constant to strain 0.002",
               "target: 0.01");
         fixture_steps(f, 500);
-        memcpy(eps[i], column(f, "eps_d"), sizeof eps[i]);
+        memcpy(eps[i], fixture_column(f, "eps_d"), sizeof eps[i]);
         assert_int_equal(f->sim.rig.stage, 1);
     }
     assert_memory_equal(eps[0], eps[1], sizeof eps[0]);
@@ -233,7 +213,7 @@ static void a_confined_box_can_be_released(void **state)
         start(f, models[m], "", "isotropic to 60 MPa, isotropic to 2 MPa", "target: 0.01");
         run(f, 20000);
         size_t last = f->sim.rig.curve.table.n - 1, top = (size_t)f->sim.rig.stage_row;
-        const double *p = column(f, "p"), *eps = column(f, "eps_v");
+        const double *p = fixture_column(f, "p"), *eps = fixture_column(f, "eps_v");
         CHECK_BETWEEN(p[top], 54e6, 62e6);
         CHECK_BETWEEN(p[last], 0, 12e6); /* the mean of a row */
         CHECK_BETWEEN(eps[last], -0.1 * eps[top], 0.5 * eps[top]);
@@ -251,8 +231,8 @@ static void what_a_servo_misses_is_told(void **state)
         box(f, 1);
         start(f, brc_registry_at(m), "", "isotropic to 20 MPa", "target: 0.2");
         run(f, 20000);
-        const double *x = column(f, "sigma_x"), *y = column(f, "sigma_y"),
-                     *z = column(f, "sigma_z"), *missed = column(f, "missed");
+        const double *x = fixture_column(f, "sigma_x"), *y = fixture_column(f, "sigma_y"),
+                     *z = fixture_column(f, "sigma_z"), *missed = fixture_column(f, "missed");
         for (size_t i = 0; i < f->sim.rig.curve.table.n; i++) {
             largest = fmax(largest, fmax(x[i], fmax(y[i], z[i])));
             double scale = fmax(z[i], 0.01 * largest);
@@ -261,7 +241,7 @@ static void what_a_servo_misses_is_told(void **state)
         }
         print_message("%s: missed by %.3g\n", brc_registry_at(m)->name, worst);
         assert_true(worst > 1e-4);
-        CHECK_NEAR(result(f, "servo_missed"), worst, 0, 0);
+        CHECK_NEAR(fixture_result(f, "servo_missed").value, worst, 0, 0);
     }
 }
 
@@ -275,7 +255,7 @@ static void a_held_axis_misses_nothing(void **state)
               "uniaxial strain to strain 0.0006, lateral constant to strain 0.0006",
               "sample_steps: 16");
         run(f, 20000);
-        const double *missed = column(f, "missed"), *x = column(f, "sigma_x");
+        const double *missed = fixture_column(f, "missed"), *x = fixture_column(f, "sigma_x");
         size_t second = (size_t)f->sim.rig.stage_row;
         assert_true(second > 3 && f->sim.rig.stage == 1 && f->sim.rig.stage_step % 16 > 1);
         for (size_t i = 0; i < second; i++)

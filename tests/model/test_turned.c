@@ -103,7 +103,7 @@ static int drive_along_axes(struct brc_sim *sim)
 static int measure(struct brc_sim *sim)
 {
     struct brc_bodies *b = &sim->bodies;
-    double(*x)[3] = malloc(b->n * sizeof *x), now[BRC_MAX_PLATENS][3];
+    double(*x)[3] = malloc(b->n * sizeof *x), now[BRC_MAX_PLATENS][3] = {{0}};
     memcpy(x, b->x, b->n * sizeof *x);
     turn_all(b->x, b->n, world.back);
     for (int i = 0; i < sim->rig.n_platens; i++) {
