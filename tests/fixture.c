@@ -71,6 +71,25 @@ void fixture_specimen(struct fixture *f, const char *settings)
     f->has_specimen = true;
 }
 
+void fixture_turn_vectors(double (*a)[3], size_t n, double m[3][3])
+{
+    for (size_t i = 0; i < n; i++) {
+        double old[3];
+        brc_copy(old, a[i]);
+        brc_mat_mul(a[i], m, old);
+    }
+}
+
+void fixture_turn(struct fixture *f, double m[3][3])
+{
+    struct brc_facets *s = &f->specimen.facets;
+    fixture_turn_vectors(s->vertex, s->n_vertices, m);
+    fixture_turn_vectors(s->normal, s->n_facets, m);
+    fixture_turn_vectors(s->centroid, s->n_facets, m);
+    fixture_turn_vectors(s->seed, s->n_cells, m);
+    fixture_turn_vectors(s->centre, s->n_cells, m);
+}
+
 void fixture_grid(struct fixture *f, int nx, int ny, int nz, double edge, double jitter)
 {
     char text[256];

@@ -73,6 +73,10 @@ bool fixture_is(const struct brc_model *model, const char *name);
     "eps_th: 0.02"
 #define FIXTURE_ENERGIES "g_fn: 64.6 J/m2; g_fs: 31114.4 J/m2"
 
+/* Turns n vectors, or all that a specimen's cells are made of, by a matrix. */
+void fixture_turn_vectors(double (*a)[3], size_t n, double m[3][3]);
+void fixture_turn(struct fixture *f, double m[3][3]);
+
 /* --- moving ------------------------------------------------------------------------------------
  */
 

@@ -66,6 +66,7 @@ for form in "12 0" "8 0" "6 0" "12 3000"; do
          n && NF == 5 { printf "%s %.*f %.*f %.*f 0\n", $1, d, $2 + far, d, $3 - far, d, $4 + far; next } { print }' \
         "$lamellae" >lamellae.tess
     case_file lamellae 'shape: polyhedron, grains: tess, tess: lamellae.tess, tess_unit: 1 cm'
+    sed -i 's/^test:.*/test: {kind: none}/' lamellae.yaml # a cube on its corner, which no platen can load
     "$breccia" run lamellae.yaml --model polyhedra --set polyhedra.radius=0.01mm -o lamellae --force --quiet \
         2>said.txt
     [ $? -eq 3 ] && [ "$(wc -l <said.txt)" -eq 1 ] && grep -q 'erodes grain .* away; all grains keep' said.txt ||

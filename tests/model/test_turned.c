@@ -27,35 +27,16 @@ static struct {
     double n[BRC_MAX_PLATENS][3]; /* of the platens, in the axes of the test */
 } world;
 
-static void turn_all(double (*a)[3], size_t n, double m[3][3])
-{
-    for (size_t i = 0; i < n; i++) {
-        double old[3];
-        brc_copy(old, a[i]);
-        brc_mat_mul(a[i], m, old);
-    }
-}
-
-static void turn_specimen(struct brc_specimen *s, double m[3][3])
-{
-    struct brc_facets *f = &s->facets;
-    turn_all(f->vertex, f->n_vertices, m);
-    turn_all(f->normal, f->n_facets, m);
-    turn_all(f->centroid, f->n_facets, m);
-    turn_all(f->seed, f->n_cells, m);
-    turn_all(f->centre, f->n_cells, m);
-}
-
 static void turn_platens(struct brc_sim *sim, double m[3][3])
 {
     struct brc_bodies *b = &sim->bodies;
     size_t n = b->n_grains;
-    turn_all(b->x + n, b->n - n, m);
-    turn_all(b->v + n, b->n - n, m);
-    turn_all(b->v_mean + n, b->n - n, m);
+    fixture_turn_vectors(b->x + n, b->n - n, m);
+    fixture_turn_vectors(b->v + n, b->n - n, m);
+    fixture_turn_vectors(b->v_mean + n, b->n - n, m);
     for (int i = 0; i < sim->rig.n_platens; i++) {
-        turn_all(&sim->rig.platen[i].n, 1, m);
-        turn_all(&sim->rig.platen[i].across, 1, m);
+        fixture_turn_vectors(&sim->rig.platen[i].n, 1, m);
+        fixture_turn_vectors(&sim->rig.platen[i].across, 1, m);
     }
 }
 
@@ -68,7 +49,7 @@ static int place(struct brc_sim *sim)
     double(*x)[3] = malloc(n * sizeof *x), (*q)[4] = malloc(n * sizeof *q);
     memcpy(x, b->x, n * sizeof *x);
     memcpy(q, b->q, n * sizeof *q);
-    turn_all(b->x, n, world.back);
+    fixture_turn_vectors(b->x, n, world.back);
     memcpy(b->x0, b->x, n * sizeof *x);
     for (size_t i = 0; i < n; i++) {
         brc_quat_mul(b->q[i], world.back_turn, q[i]);
@@ -83,8 +64,8 @@ static int place(struct brc_sim *sim)
         brc_copy(world.n[i], sim->rig.platen[i].n);
     memcpy(b->x, x, n * sizeof *x);
     memcpy(b->q, q, n * sizeof *q);
-    turn_all(b->v, n, world.forth);
-    turn_all(b->v_mean, n, world.forth);
+    fixture_turn_vectors(b->v, n, world.forth);
+    fixture_turn_vectors(b->v_mean, n, world.forth);
     turn_platens(sim, world.forth);
     free(x);
     free(q);
@@ -105,7 +86,7 @@ static int measure(struct brc_sim *sim)
     struct brc_bodies *b = &sim->bodies;
     double(*x)[3] = malloc(b->n * sizeof *x), now[BRC_MAX_PLATENS][3] = {{0}};
     memcpy(x, b->x, b->n * sizeof *x);
-    turn_all(b->x, b->n, world.back);
+    fixture_turn_vectors(b->x, b->n, world.back);
     for (int i = 0; i < sim->rig.n_platens; i++) {
         brc_copy(now[i], sim->rig.platen[i].n);
         brc_copy(sim->rig.platen[i].n, world.n[i]);
@@ -124,7 +105,7 @@ static void field(const struct brc_sim *sim, size_t grain, double v[3])
     for (int i = 0; i < sim->rig.n_platens; i++)
         brc_copy(as_placed.rig.platen[i].n, world.n[i]);
     world.type->field(&as_placed, grain, v);
-    turn_all((double(*)[3])v, 1, world.forth);
+    fixture_turn_vectors((double(*)[3])v, 1, world.forth);
 }
 
 /* What stands in f is made again in g, turned by phi. */
@@ -147,7 +128,7 @@ static void make_turned(struct fixture *f, struct fixture *g, const char *settin
     brc_scale(back, phi, -1);
     brc_quat_from_rotation(world.back_turn, back);
     brc_quat_matrix(world.back, world.back_turn);
-    turn_specimen(&g->specimen, world.forth);
+    fixture_turn(g, world.forth);
     g->instead = &world.seen;
     fixture_test(g, model, settings, test, own, RUN);
 }
@@ -293,7 +274,7 @@ static void a_beam_bends_alike_along_any_axis(void **state)
                      sense < 0 ? "-" : "", "xyz"[across]);
             whole_turn(turn, axis, across, sense);
             fixture_specimen(f, beam);
-            turn_specimen(&f->specimen, turn);
+            fixture_turn(f, turn);
             bend(f, models[m], settings, way);
             worst = fmax(worst, fabs(f->sim.rig.strain / strain - 1));
             CHECK_NEAR(f->sim.rig.strain, strain, 0, 1e-6);
@@ -312,7 +293,7 @@ static void a_path_turns_with_its_axes(void **state)
     for (int m = 0; m < N_MODELS; m++) {
         fixture_specimen(f, BOX);
         fixture_specimen(g, BOX);
-        turn_specimen(&g->specimen, quarter);
+        fixture_turn(g, quarter);
         fixture_test(f, models[m], "", "kind: true_triaxial; target: 0.01",
                      "stages: stress 20 MPa 30 MPa 80 MPa", RUN);
         fixture_test(g, models[m], "", "kind: true_triaxial; target: 0.01",
