@@ -16,6 +16,7 @@
 #include "common/runs/export.h"
 #include "common/output/info.h"
 #include "common/runs/run.h"
+#include "common/runs/sweep.h"
 #include "common/rigs/readings.h"
 
 #include <signal.h>
@@ -36,9 +37,10 @@ struct options {
     /* The ladder's own, and what a run is told: its members are those of runs and comparisons, too,
      * so that an option of several commands has one place. */
     struct brc_converge_options ladder;
+    struct brc_sweep_options sweep;
     const char *overrides[MAX_OVERRIDES];
     int n_overrides;
-    bool is_quiet, is_help, is_residual;
+    bool is_quiet, is_help, is_residual, can_resume; /* the last: the command has --resume */
     const char *program;
     /* The command and its words without flags, for the command that goes on: moved to the front of
      * argv as they are read. A program may change argv, so that no copy of
@@ -139,6 +141,16 @@ static int run_ladder(struct brc_context *ctx, const struct options *o)
     return brc_converge(ctx, &o->ladder);
 }
 
+static int act_sweep(struct brc_context *ctx, const struct options *o)
+{
+    struct brc_sweep_options sweep = o->sweep;
+    sweep.path = o->operand;
+    sweep.set = o->overrides;
+    sweep.n_set = o->n_overrides;
+    brc_signals_hold(); /* at once: each run that is finished is kept */
+    return brc_sweep(ctx, &sweep);
+}
+
 /* From the file alone, so that one of another version, or one whose case is gone, can still be
  * looked at. */
 static int act_info(struct brc_context *ctx, const struct options *o)
@@ -228,8 +240,8 @@ static int act_tests(struct brc_context *ctx, const struct options *o)
 
 #define AT(member) offsetof(struct options, member)
 
-/* Options by command: R run, C compare, V converge, X export, E envelope. One name may stand in
- * several rows, where commands mean different things by it. */
+/* Options by command: R run, C compare, V converge, S sweep, X export, E envelope. One name may
+ * stand in several rows, where commands mean different things by it. */
 static const struct option {
     const char *name, *value; /* value NULL: a flag */
     size_t member;
@@ -250,6 +262,17 @@ static const struct option {
      "loading of the reference finer by this power of 2, half the step; default: 8"},
     {"--jobs", "N", AT(ladder.jobs), BRC_PROGRESS_MAX_RUNS, "V",
      "runs at a time; default: 1, for times that nothing disturbs"},
+    {"-o", "DIR", AT(sweep.dir), 0, "S", "folder of tables; default: results/<name of FILE>"},
+    {"--dry-run", NULL, AT(sweep.is_dry), 0, "S",
+     "check all runs, print them and the time that they will take"},
+    {"--jobs", "N", AT(sweep.jobs), BRC_SWEEP_MAX_JOBS, "S",
+     "runs at a time; default: all processors"},
+    {"--cache", "FILE", AT(sweep.cache), 0, "S",
+     "where finished runs are kept; default: `cache` of FILE, else DIR/runs.jsonl"},
+    {"--verify", "PART", AT(sweep.verify), 0, "S",
+     "do a random part of the kept runs again, as 2%, and compare to the bit"},
+    {"--fresh", NULL, AT(sweep.is_fresh), 0, "S", "do all runs again, whatever is kept"},
+    {"--keep", NULL, AT(sweep.keeps), 0, "S", "keep the folder of each run, in DIR/runs"},
     {"-o", "DIR", AT(out), 0, "RC",
      "folder of results; default: results/<case>/<model>, results/<case>"},
     {"-o", "DIR", AT(out), 0, "E", "folder of tables and picture; default: the table is printed"},
@@ -258,16 +281,17 @@ static const struct option {
     {"--table", "NAME", AT(table), 0, "X", "CSV of this table: curve, events, bodies, pairs, ..."},
     {"--format", "FORMAT", AT(format), 0, "X",
      "stl: a solid a fragment; tess: the specimen for Neper"},
-    {"--set", "KEY=VALUE", AT(overrides), 0, "RCV",
+    {"--set", "KEY=VALUE", AT(overrides), 0, "RCVS",
      "replace a value of the case, as vgcm.e_bar=\"50 GPa\"; repeatable"},
     {"--resume", NULL, AT(ladder.run.is_resumed), 0, "RC",
      "go on from the saved state, to the same bits"},
     {"--resume", NULL, AT(ladder.run.is_resumed), 0, "V",
      "keep finished runs, go on with the others"},
     {"--force", NULL, AT(ladder.run.is_forced), 0, "RCVE", "replace results that are there"},
+    {"--force", NULL, AT(sweep.is_forced), 0, "S", "replace tables that are there"},
     {"--force", NULL, AT(ladder.run.is_forced), 0, "X", "replace the file that is there"},
-    {"--quiet", NULL, AT(is_quiet), 0, "RCV", "no progress, no log lines"},
-    {"--help", NULL, AT(is_help), 0, "RCVEPMIXT", "this text"},
+    {"--quiet", NULL, AT(is_quiet), 0, "RCVS", "no progress, no log lines"},
+    {"--help", NULL, AT(is_help), 0, "RCVESPMIXT", "this text"},
 };
 enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
@@ -305,6 +329,15 @@ static const struct command commands[] = {
      "writes\n"
      "envelope.csv, envelope_fits.csv and envelope.png. Runs without a peak are left out.\n",
      act_envelope},
+    {"sweep", 'S', false, "FILE", "many runs: all combinations of values, seeds, models and cases",
+     "breccia sweep cases/sweeps/strength.yaml --dry-run",
+     "Runs all combinations of the axes of a sweep file side by side, or over the ranks of "
+     "mpirun;\n"
+     "writes sweep.csv (means, standard errors, 95 % intervals), runs.csv and sweep.h5. Finished "
+     "runs\n"
+     "are kept under a hash of their complete input and are not done again: the same command goes "
+     "on.\n",
+     act_sweep},
     {"info", 'I', false, "FILE", "tell what a saved state or a frame holds",
      "breccia info results/pair/vgcm/state.h5",
      "Prints case, seed, version, step, counts, and each field with its unit and meaning.\n",
@@ -360,7 +393,7 @@ static void print_help(FILE *out)
 static void print_command_help(FILE *out, const struct command *c)
 {
     fprintf(out, "usage: breccia %s%s%s%s\n\n%s\n%s", c->name, *c->operand ? " " : "", c->operand,
-            strchr("RCVE", c->letter) ? " [OPTION]..." : "", c->does, c->more);
+            strchr("RCVES", c->letter) ? " [OPTION]..." : "", c->does, c->more);
     fputs("\noptions:\n", out);
     for (int i = 0; i < N_OPTIONS; i++) {
         char left[40];
@@ -504,6 +537,7 @@ static int act(struct brc_context *ctx, const struct command *c, char **words, s
     bool needs_file = *c->operand && *c->operand != '[';
     o->kept = words;
     o->n_kept = 1; /* the command itself */
+    o->can_resume = find_option(c, "--resume", strlen("--resume")) != NULL;
     for (int i = 1; words[i]; i++)
         BRC_TRY(read_word(ctx, c, words, &i, o));
     /* by the context, from which the processes of a comparison or a ladder have it, too */
@@ -565,7 +599,7 @@ static void print_resume(FILE *out, int code, const struct options *o)
     brc_console_word(out, o->program);
     for (int i = 0; i < o->n_kept; i++)
         brc_console_word(out, o->kept[i]);
-    if (is_saved || o->ladder.run.is_resumed)
+    if (o->can_resume && (is_saved || o->ladder.run.is_resumed))
         brc_console_word(out, "--resume");
     else if (o->ladder.run.is_forced)
         brc_console_word(out, "--force");

@@ -162,12 +162,21 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
 /* Contacts with platens have no tangents, sleepers or feature pairs: the fields that are for these
  * are not saved there (no_platens), by their names in files. There is no after_break: a broken bond
  * needs no new list, since collision acts between bonded grains, too. */
+/* Move a number when what it stands for computes otherwise; tests/cli/test_physics.sh watches. */
+static const struct brc_physics physics[] = {{"polyhedra", 1, NULL},
+                                             {"features closed", 1, "features=closed"},
+                                             {"features strict", 1, "features=strict"},
+                                             {"features merged", 1, "features=merged"},
+                                             {"condensed", 1, "evaluation=auto|condensed"},
+                                             {NULL, 0, NULL}};
+
 const struct brc_model brc_model_polyhedra = {
     .name = "polyhedra",
     .citation = "S.A. Galindo-Torres, D.M. Pedroso, D.J. Williams, L. Li: Breaking processes in "
                 "three-dimensional bonded granular materials with general shapes. Computer Physics "
                 "Communications 183 (2012) 266-277",
     .params = BRC_PARAMS(param_list, struct poly_params),
+    .physics = physics,
     .contact_fields = BRC_FIELDSET(contact_list, struct poly_contacts),
     .point_fields = BRC_FIELDSET(point_fields, struct poly_points),
     .point_lanes = BRC_LANES,

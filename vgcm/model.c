@@ -255,12 +255,19 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
 
 /* Not saved (no_pairs and so on): moments on grains, which the loop adds to the bodies at once, and
  * what only points of platens have. */
+/* Move a number when what it stands for computes otherwise; tests/cli/test_physics.sh watches. */
+static const struct brc_physics physics[] = {{"vgcm", 1, NULL},
+                                             {"brittle", 1, "softening=none"},
+                                             {"softening", 1, "softening=linear|bilinear"},
+                                             {NULL, 0, NULL}};
+
 const struct brc_model brc_model_vgcm = {
     .name = "vgcm",
     .citation = "M. Candeias, N. Monteiro Azevedo, M. L. Braga Farinha: VGCM3D - A 3D rigid "
                 "particle model for rock fracture following the Voronoi tessellation of the grain "
                 "structure: formulation and validation",
     .params = BRC_PARAMS(params, struct vgcm_params),
+    .physics = physics,
     .body_fields = BRC_FIELDSET(body_fields, struct vgcm_bodies),
     .contact_fields = BRC_FIELDSET(contact_fields, struct vgcm_contacts),
     .point_fields = BRC_FIELDSET(point_fields, struct vgcm_points),

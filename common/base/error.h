@@ -23,7 +23,8 @@
     X(BRC_ERR_BLOWUP, -7, 6, "the simulation became unstable")               \
     X(BRC_ERR_INTERRUPTED, -8, 7, "interrupted")                             \
     X(BRC_ERR_ENERGY, -9, 8, "the energy does not add up; results are kept") \
-    X(BRC_ERR_NOT_BEGUN, -10, 7, "interrupted before anything was saved")
+    X(BRC_ERR_NOT_BEGUN, -10, 7, "interrupted before anything was saved")    \
+    X(BRC_ERR_RUNS, -11, 9, "runs of a sweep failed; the others are kept")
 
 enum brc_error_code {
 #define BRC_ERROR_ENUM(name, code, status, text) name = (code),

@@ -21,6 +21,7 @@ struct brc_model {
     const char *name;
     const char *citation;
     struct brc_param_list params;
+    const struct brc_physics *physics; /* versions of the model and its laws; NULL: none are told */
     struct brc_fieldset body_fields, contact_fields, point_fields;
     unsigned flags;
     int point_lanes; /* ranges of points begin at its multiples, padded with zeros; 0 counts as 1 */

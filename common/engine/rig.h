@@ -119,7 +119,8 @@ struct brc_rig_type {
     const struct brc_quantity *quantities;
     int n_quantities;
     int n_platens;
-    int sides; /* of the polygon that stands for a circle, unless the case says; 0: as for any */
+    int physics; /* its version, which moves when it loads or measures otherwise: brc_physics */
+    int sides;   /* of the polygon that stands for a circle, unless the case says; 0: as for any */
     bool has_sides;                  /* it acts on the specimen's sides: pressure.h */
     const struct brc_rig_view *view; /* NULL: stress over the gauge strains, cracks from the side */
 

@@ -24,6 +24,10 @@
 static const struct brc_param run_params[] = {BRC_PARAM_LIST(BRC_RUN_PARAMS)};
 #undef BRC_OWNER
 const struct brc_param_list brc_run_param_list = BRC_PARAMS(run_params, struct brc_run_params);
+const struct brc_physics brc_engine_physics[] = {{"engine", 1, NULL},
+                                                 {"dynamic", 1, "run.regime=dynamic"},
+                                                 {"quasi-static", 1, "run.regime=quasi_static"},
+                                                 {NULL, 0, NULL}};
 
 #define SIM_RENAMED(type, name, in_files, unit, meaning) \
     {#in_files, BRC_TYPE_OF(type), 1, BRC_STATE, unit, meaning, offsetof(struct brc_sim, name)},

@@ -51,18 +51,21 @@ enum brc_damped { BRC_DAMPED_AUTO, BRC_DAMPED_MOTION, BRC_DAMPED_FLUCTUATION };
         simd, "auto|base|avx2|avx512", "auto",                                                    \
         "instructions that hot loops use; the same bits with each of them; where a loop has no "  \
         "AVX-512 build, avx512 runs its AVX2 one",                                                \
-        .flags = BRC_PARAM_MAY_CHANGE)                                                            \
+        .flags = BRC_PARAM_MAY_CHANGE | BRC_PARAM_COST)                                           \
     INT(max_steps, "10000000", "[1, 2000000000]", "the run ends after this many steps",           \
         .flags = BRC_PARAM_MAY_CHANGE)                                                            \
     REAL(checkpoint, "s", "5 min", "[0, inf)",                                                    \
-         "elapsed time between saved states; 0: none by time", .flags = BRC_PARAM_MAY_CHANGE)     \
+         "elapsed time between saved states; 0: none by time",                                    \
+         .flags = BRC_PARAM_MAY_CHANGE | BRC_PARAM_COST)                                          \
     INT(checkpoint_steps, "0", "[0, 2000000000]", "steps between saved states; 0: none by steps", \
-        .flags = BRC_PARAM_MAY_CHANGE)
+        .flags = BRC_PARAM_MAY_CHANGE | BRC_PARAM_COST)
 
 struct brc_run_params {
     BRC_PARAM_MEMBERS(BRC_RUN_PARAMS)
 };
 extern const struct brc_param_list brc_run_param_list;
+/* Versions of what this folder computes: motion, masses, neighbour search, platens, ledger. */
+extern const struct brc_physics brc_engine_physics[];
 
 /* Scalars that belong to the state, declared once for saving and hashing; with those of the rig and
  * the ledger's terms. */

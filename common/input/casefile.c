@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A YAML document to a flat list of entries, with the bytes where each stands: the writer puts
- * values back in their place. Anchors, tags and several documents are refused: a case is data that
- * people read. Called through casefile.h by whoever has a case; knows the keys of no section but
- * the top level's.
+ * values back in their place. Called through casefile.h by whoever has a case; knows the keys of no
+ * section but the top level's.
  *
  * The document is loaded as a whole and then walked through, rather than read event by event: what
  * a value belongs to is then known from where it is, and need not be kept beside a stack. A case
@@ -11,6 +10,7 @@
 
 #include "common/base/grow.h"
 #include "common/base/input_file.h"
+#include "common/input/casefile_yaml.h"
 
 #include <yaml.h>
 
@@ -23,7 +23,7 @@
 struct reader {
     struct brc_context *ctx;
     struct brc_casefile *c;
-    yaml_document_t document;
+    yaml_document_t *document;
     const char *key[BRC_CASEFILE_MAX_LEVELS]; /* from the top level to the one that is being read */
     size_t n_chars, n_bytes;                  /* up to the same place of the text */
     size_t key_begin, begin, end;             /* bytes of the last key and value */
@@ -35,61 +35,6 @@ struct pair {
     int depth; /* of the key: 0 at the top level */
     int place; /* of the mapping in the sections, -1: the root */
 };
-
-/* ---- bytes --------------------------------------------------------------------------------- */
-
-/* Bytes of the UTF-8 character at s, 0 for an invalid or a control character. libyaml would find
- * the same, but name a byte and no line, and values of --set do not pass it. */
-static size_t utf8_length(const unsigned char *s, size_t left)
-{
-    static const uint32_t lowest[] = {0, 0, 0x80, 0x800, 0x10000}; /* no longer than needed */
-    size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc0 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
-    if (n == 0 || n > left || s[0] > 0xf4)
-        return 0;
-    uint32_t code = n == 1 ? s[0] : s[0] & (0xffu >> (n + 1));
-    for (size_t i = 1; i < n; i++) {
-        if ((s[i] & 0xc0) != 0x80)
-            return 0;
-        code = code << 6 | (s[i] & 0x3f);
-    }
-    bool is_control = (code < 0x20 && code != '\t' && code != '\n' && code != '\r') ||
-                      (code >= 0x7f && code < 0xa0);
-    bool is_surrogate = code >= 0xd800 && code < 0xe000;
-    bool is_mark = code == 0xfeff || code >= 0x110000; /* byte order mark, too large */
-    return code < lowest[n] || is_control || is_surrogate || is_mark ? 0 : n;
-}
-
-/* Bytes up to the first that starts no character, size when all do. */
-static size_t good_bytes(const char *text, size_t size)
-{
-    size_t i = 0;
-    for (size_t n = 1; i < size && n > 0; i += n)
-        n = utf8_length((const unsigned char *)text + i, size - i);
-    return i;
-}
-
-bool brc_casefile_is_text(const char *text)
-{
-    return good_bytes(text, strlen(text)) == strlen(text);
-}
-
-/* Before libyaml sees a byte: what it says of bad ones has no line. */
-static int check_bytes(struct brc_context *ctx, const char *path, const char *text, size_t size)
-{
-    int line = 1;
-    if (size > BRC_CASEFILE_MAX_BYTES)
-        BRC_FAIL(ctx, BRC_ERR_INPUT, "%s: the case file is larger than %d bytes", path,
-                 BRC_CASEFILE_MAX_BYTES);
-    size_t good = good_bytes(text, size);
-    if (good == size)
-        return 0;
-    for (size_t i = 0; i < good; i++)
-        line += text[i] == '\n';
-    BRC_FAIL(ctx, BRC_ERR_INPUT,
-             "%s:%d: byte 0x%02x starts no valid UTF-8 text or is a control character; save the "
-             "file as plain UTF-8 without byte order mark",
-             path, line, (unsigned char)text[good]);
-}
 
 static char *copy_text(struct brc_context *ctx, const char *text, size_t size)
 {
@@ -257,7 +202,7 @@ static int read_items(struct reader *r, const struct pair *p, char **text)
                            *end = p->value->data.sequence.items.top;
     const yaml_mark_t *mark = &p->value->end_mark;
     for (const yaml_node_item_t *i = first; i < end; i++) {
-        const yaml_node_t *item = yaml_document_get_node(&r->document, *i);
+        const yaml_node_t *item = yaml_document_get_node(r->document, *i);
         if (item->type != YAML_SCALAR_NODE)
             return fail_at(r, line_of(item),
                            "a sequence holds plain values, no mappings and no sequences");
@@ -270,7 +215,7 @@ static int read_items(struct reader *r, const struct pair *p, char **text)
     *text = brc_alloc(r->ctx, size, 1);
     for (const yaml_node_item_t *i = first; *text && i < end; i++)
         strcat(strcat(*text, i > first ? ", " : ""),
-               (const char *)yaml_document_get_node(&r->document, *i)->data.scalar.value);
+               (const char *)yaml_document_get_node(r->document, *i)->data.scalar.value);
     return *text ? 0 : BRC_ERR_MEMORY;
 }
 
@@ -306,8 +251,8 @@ static int read_mapping(struct reader *r, const yaml_node_t *node, int depth, in
     r->begin = byte_at(r, &node->start_mark);
     r->end = r->begin + is_flow;
     for (const yaml_node_pair_t *i = first; i < end; i++) {
-        const struct pair p = {yaml_document_get_node(&r->document, i->key),
-                               yaml_document_get_node(&r->document, i->value), depth, place};
+        const struct pair p = {yaml_document_get_node(r->document, i->key),
+                               yaml_document_get_node(r->document, i->value), depth, place};
         BRC_TRY(read_pair(r, &p));
     }
     struct brc_casefile_place *s = place < 0 ? &r->c->root : &r->c->sections[place];
@@ -347,97 +292,27 @@ static int read_pair(struct reader *r, const struct pair *p)
                                                   : open_mapping(r, p);
 }
 
-/* What YAML says of a line. Of a tab it says "found character that cannot start any token", which
- * helps nobody who does not see tabs. */
-static int fail_yaml(struct reader *r, const yaml_parser_t *parser)
-{
-    const char *line = r->c->text;
-    for (size_t i = 0; i < parser->problem_mark.line && strchr(line, '\n'); i++)
-        line = strchr(line, '\n') + 1;
-    size_t blanks = strspn(line, " \t");
-    bool has_tab = memchr(line, '\t', blanks) != NULL;
-    BRC_FAIL(r->ctx, BRC_ERR_INPUT, "%s:%d: not valid YAML: %s%s%s%s", r->c->path,
-             (int)parser->problem_mark.line + 1,
-             has_tab ? "the line is indented by a tab, indent it by blanks; " : "",
-             parser->problem ? parser->problem : "unreadable", parser->context ? ", " : "",
-             parser->context ? parser->context : "");
-}
-
-/* Anchors, aliases and tags are YAML's way to programs; a case file is data. Looked for in the
- * words of the file, as a document that is loaded has none left. Where the words end in an error
- * the loader meets it, too. */
-static int refuse_extras(struct reader *r, yaml_parser_t *parser)
-{
-    yaml_token_t token;
-    int code = 0;
-    for (bool is_end = false; !is_end && code == 0 && yaml_parser_scan(parser, &token);) {
-        int line = (int)token.start_mark.line + 1;
-        if (token.type == YAML_ANCHOR_TOKEN || token.type == YAML_ALIAS_TOKEN)
-            code = fail_at(r, line,
-                           "anchors and aliases (&name, *name) are not accepted; write the value "
-                           "out at each place");
-        else if (token.type == YAML_TAG_TOKEN)
-            code = fail_at(r, line, "tags (!name) are not accepted; write the plain value");
-        is_end = token.type == YAML_STREAM_END_TOKEN;
-        yaml_token_delete(&token);
-    }
-    return code;
-}
-
-/* An empty document has no root, and so has what follows the last one. A second is refused: which
- * of the two would be the case? */
-static int read_documents(struct reader *r, yaml_parser_t *parser)
-{
-    int code = 0;
-    const yaml_node_t *root;
-    for (int n = 0; code == 0; n++) {
-        if (!yaml_parser_load(parser, &r->document))
-            return fail_yaml(r, parser);
-        root = yaml_document_get_root_node(&r->document);
-        if (root && n > 0)
-            code = fail_at(r, (int)r->document.start_mark.line + 1,
-                           "a case file holds one document; this is a second");
-        else if (root && root->type != YAML_MAPPING_NODE)
-            code = fail_at(r, line_of(root),
-                           root->type == YAML_SCALAR_NODE
-                               ? "a case file is a mapping, `key: value`; this is a lone value"
-                               : "a case file is a mapping, `key: value`; this is a sequence");
-        else if (root)
-            code = read_mapping(r, root, 0, -1);
-        yaml_document_delete(&r->document);
-        if (!root)
-            break;
-    }
-    return code;
-}
-
-/* Goes through the text from its start. */
-static int parse(struct reader *r, size_t size, int (*act)(struct reader *r, yaml_parser_t *parser))
-{
-    yaml_parser_t parser;
-    if (!yaml_parser_initialize(&parser))
-        BRC_FAIL(r->ctx, BRC_ERR_MEMORY, "out of memory for the YAML parser");
-    yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&parser, (const unsigned char *)r->c->text, size);
-    int code = act(r, &parser);
-    yaml_parser_delete(&parser);
-    return code;
-}
-
 /* ---- interface ----------------------------------------------------------------------------- */
+
+/* From the root on. */
+static int read_document(void *user, yaml_document_t *document)
+{
+    struct reader *r = user;
+    r->document = document;
+    return read_mapping(r, yaml_document_get_root_node(document), 0, -1);
+}
 
 int brc_casefile_parse(struct brc_context *ctx, const char *path, const char *text, size_t size,
                        struct brc_casefile *c)
 {
+    const struct brc_yaml_text from = {path, "case file", text, size};
     memset(c, 0, sizeof *c);
-    BRC_TRY(check_bytes(ctx, path, text, size));
     c->path = copy_text(ctx, path, strlen(path));
     c->text = copy_text(ctx, text, size);
     if (!c->path || !c->text)
         return BRC_ERR_MEMORY;
     struct reader r = {.ctx = ctx, .c = c};
-    BRC_TRY(parse(&r, size, refuse_extras));
-    BRC_TRY(parse(&r, size, read_documents));
+    BRC_TRY(brc_yaml_load(ctx, &from, read_document, &r));
     return brc_casefile_top_level(ctx, c);
 }
 
@@ -466,7 +341,7 @@ int brc_casefile_override(struct brc_context *ctx, struct brc_casefile *c, const
     int n = 0;
     if (!equals || size > BRC_CASEFILE_MAX_BYTES)
         BRC_FAIL(ctx, BRC_ERR_USAGE, no_form, assignment);
-    if (good_bytes(assignment, size) < size || strpbrk(assignment, "\t\r\n"))
+    if (!brc_casefile_is_text(assignment) || strpbrk(assignment, "\t\r\n"))
         BRC_FAIL(ctx, BRC_ERR_USAGE, "--set: the value is not one line of UTF-8 text");
     for (; at <= equals; at += strlen(part[n++]) + 1) {
         if (n == BRC_CASEFILE_MAX_LEVELS)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: YAML (libyaml) with one mapping per section, kept as a list of (section, key, text,
- * line) and judged by the parameter lists. casefile.c is the only file with yaml.h.
+ * line) and judged by the parameter lists. The files casefile*.c alone have yaml.h.
  *
  *     breccia: 1
  *     title: Unconfined compression

@@ -49,6 +49,17 @@ struct brc_param {
      * is an error, see applies.h. */
     const char *applies;
     const char *renamed; /* the key's name in older cases, which is still read; else NULL */
+    /* Of an option that was added: the value with which all is as it was without the key. Results
+     * that were kept before stay valid by it (run_key.h); else NULL. */
+    const char *off;
+};
+
+/* A part of what a result hangs on beside its keys, with a number that moves when the part computes
+ * otherwise: a result that was kept under another number is not taken any more (run_key.h). */
+struct brc_physics {
+    const char *part; /* NULL: the end of a list */
+    int version;
+    const char *when; /* the part counts where this holds, as brc_param.applies; NULL: always */
 };
 
 /* What others must know of a key stands with its declaration, so that a new key is complete in one
@@ -56,7 +67,8 @@ struct brc_param {
 enum brc_param_flags {
     BRC_PARAM_MAY_CHANGE = 1, /* may differ when a run resumes: no state depends on it */
     BRC_PARAM_AXIS = 2,       /* a choice that `breccia converge` varies unless told otherwise */
-    BRC_PARAM_FILE = 4        /* TEXT: a file; what counts for a state is what it holds */
+    BRC_PARAM_FILE = 4,       /* TEXT: a file; what counts for a state is what it holds */
+    BRC_PARAM_COST = 8        /* changes no bit of a result: time and files alone */
 };
 
 /* A list with the size of the struct that it describes. Passed by value: it is three words, and

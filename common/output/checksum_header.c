@@ -19,6 +19,7 @@ enum { BLOCK_SIZE = 1 << 14 }; /* a multiple of 8: the hash goes on between bloc
  * the grains, stages of the loading. 5: forces of cracks. */
 const struct brc_checksum_kind brc_checksum_state = {"state", 5};
 const struct brc_checksum_kind brc_checksum_frame = {"frame", 1};
+const struct brc_checksum_kind brc_checksum_tables = {"tables", 1};
 static const char advice[] = "use an undamaged copy, or start the run anew with --force";
 
 enum { MARK_SIZE = 64 }; /* more than any kind's name needs */

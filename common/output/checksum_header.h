@@ -16,7 +16,7 @@ struct brc_checksum_kind {
     const char *name; /* one word: the first line of the header is "breccia NAME, format N" */
     int format;
 };
-extern const struct brc_checksum_kind brc_checksum_state, brc_checksum_frame;
+extern const struct brc_checksum_kind brc_checksum_state, brc_checksum_frame, brc_checksum_tables;
 
 /* The header to stand before n bytes. Equal bytes have equal headers. */
 void brc_checksum_make(char header[BRC_CHECKSUM_SIZE], const struct brc_checksum_kind *kind,

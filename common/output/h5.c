@@ -198,6 +198,27 @@ int brc_h5_put_text(const struct brc_h5_file *f, const char *path, const char *t
     return code;
 }
 
+int brc_h5_put_texts(const struct brc_h5_file *f, const char *path, const char *const *text,
+                     size_t n)
+{
+    size_t width = 1;
+    const hsize_t extent = n;
+    for (size_t i = 0; i < n; i++)
+        width = strlen(text[i]) > width ? strlen(text[i]) : width;
+    char *all = brc_alloc(f->ctx, n, width);
+    if (!all)
+        return BRC_ERR_MEMORY;
+    for (size_t i = 0; i < n; i++)
+        memcpy(all + i * width, text[i], strlen(text[i]));
+    hid_t type = text_type("");
+    H5Tset_size(type, width);
+    int code = put_dataset(f, path, type, type, H5Screate_simple(1, &extent, NULL),
+                           without_times(H5P_DATASET_CREATE), all);
+    H5Tclose(type);
+    free(all);
+    return code;
+}
+
 /* An attribute of the object at path; takes the space. */
 static int put_attribute(const struct brc_h5_file *f, const char *path, const char *name,
                          hid_t file_form, hid_t memory_form, hid_t space, const void *value)

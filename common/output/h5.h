@@ -43,6 +43,9 @@ void brc_h5_close(struct brc_h5_file *f);
 int brc_h5_put_group(const struct brc_h5_file *f, const char *path);
 /* A dataset that holds one text, of its own length; "" takes one byte. */
 int brc_h5_put_text(const struct brc_h5_file *f, const char *path, const char *text);
+/* A dataset of n texts, all of the length of the longest, filled up with bytes 0. */
+int brc_h5_put_texts(const struct brc_h5_file *f, const char *path, const char *const *text,
+                     size_t n);
 /* Attributes of a group or dataset. */
 int brc_h5_put_label(const struct brc_h5_file *f, const char *path, const char *name,
                      const char *text);

@@ -22,7 +22,7 @@ enum { CELL_SIZE = 512 };
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
 /* Bytes above 0x7f pass: texts come from a case, which is UTF-8. */
-static void json_text(FILE *out, const char *text)
+void brc_output_json_text(FILE *out, const char *text)
 {
     fputc('"', out);
     for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
@@ -36,8 +36,8 @@ static void json_text(FILE *out, const char *text)
     fputc('"', out);
 }
 
-/* JSON has no word for what is not a number. */
-static void json_number(FILE *out, double value)
+/* In digits that read back to the same bits. */
+void brc_output_json_number(FILE *out, double value)
 {
     if (isfinite(value))
         fprintf(out, "%.17g", value);
@@ -48,14 +48,14 @@ static void json_number(FILE *out, double value)
 static void json_text_entry(FILE *out, const char *name, const char *text)
 {
     fprintf(out, "  \"%s\": ", name);
-    json_text(out, text);
+    brc_output_json_text(out, text);
     fputs(",\n", out);
 }
 
 static void json_number_entry(FILE *out, const char *name, double value)
 {
     fprintf(out, "  \"%s\": ", name);
-    json_number(out, value);
+    brc_output_json_number(out, value);
     fputs(",\n", out);
 }
 
@@ -67,12 +67,12 @@ static void json_results(FILE *out, const struct brc_summary *s)
     for (int i = 0; i < s->n_results; i++) {
         const struct brc_result *r = &s->results[i];
         fprintf(out, "%s\n    \"%s\": {\"value\": ", i ? "," : "", r->name);
-        json_number(out, r->value);
+        brc_output_json_number(out, r->value);
         fputs(", \"unit\": ", out);
-        json_text(out, r->unit);
+        brc_output_json_text(out, r->unit);
         if (r->note) {
             fputs(", \"note\": ", out);
-            json_text(out, r->note);
+            brc_output_json_text(out, r->note);
         }
         fputc('}', out);
     }
@@ -99,7 +99,7 @@ static void json_energy(FILE *out, const char *key, const struct brc_ledger *l, 
     fprintf(out, "  \"%s\": {", key);
 #define TERM(name, sign, meaning)                   \
     fprintf(out, "%s\n    \"" #name "\": ", comma); \
-    json_number(out, is_known ? l->name : NAN);     \
+    brc_output_json_number(out, is_known ? l->name : NAN);     \
     comma = ",";
     BRC_LEDGER_TERMS(TERM)
 #undef TERM

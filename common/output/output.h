@@ -77,6 +77,9 @@ int brc_output_summary(struct brc_context *ctx, const char *dir, const char *nam
 const char *brc_output_energy(const struct brc_summary *s, char *text, size_t size);
 /* A result by name, NULL when the test has none of that name. */
 const struct brc_result *brc_output_result(const struct brc_summary *s, const char *name);
+/* A text in quotes, and a number, as JSON has them: null for what is not a number. */
+void brc_output_json_text(FILE *out, const char *text);
+void brc_output_json_number(FILE *out, double value);
 /* A text as one field of a CSV file, by RFC 4180: in quotes where it holds commas, quotes or line
  * ends. */
 void brc_output_cell(FILE *out, const char *text);

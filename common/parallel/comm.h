@@ -12,6 +12,12 @@ struct brc_comm {
     int rank, size;
     /* Sums the partial results of all ranks in rank order; every rank gets the same bits. */
     int (*sum)(struct brc_context *ctx, const struct brc_comm *comm, double *values, int n);
+    /* Bytes to a rank; and those that wait, from any: *text, allocated with a 0 behind its n bytes,
+     * to be freed by the caller, or NULL where none wait. NULL where there is one rank. */
+    int (*send)(struct brc_context *ctx, const struct brc_comm *comm, int to, const void *bytes,
+                size_t n);
+    int (*receive)(struct brc_context *ctx, const struct brc_comm *comm, int *from, char **text,
+                   size_t *n);
 };
 
 /* 0 of 1. */
@@ -22,6 +28,8 @@ static inline const struct brc_comm *brc_comm_of(const struct brc_context *ctx)
     return ctx->comm ? ctx->comm : &brc_comm_serial;
 }
 
+/* A launcher (mpirun, srun) has started this process. */
+bool brc_comm_is_launched(void);
 /* Starts MPI where a launcher (mpirun, srun) has started this process, and sets ctx->comm to all of
  * its ranks, in *comm, which must outlive the context; else does nothing. BRC_ERR_INTERNAL: MPI
  * does not start, or was ended before. */

@@ -184,6 +184,7 @@ static const struct brc_rig_view view = {.is_from_above = true,
 const struct brc_rig_type brc_rig_brazilian = {
     .name = "brazilian",
     .meaning = "Brazilian test of a disc along y",
+    .physics = 1,
     .keys = BRC_LOADING_KEYS BRC_CURVE_KEYS "friction plate_width",
     .params = BRC_PARAMS(brazilian_params, struct brazilian_params),
     .quantities = quantities,

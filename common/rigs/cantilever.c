@@ -425,6 +425,7 @@ static const struct brc_rig_view view = {.strain = "strain",
 const struct brc_rig_type brc_rig_cantilever = {
     .name = "cantilever",
     .meaning = "a beam held at one end, with a dead load at the other",
+    .physics = 1,
     .keys = "strain_max sample_steps",
     .params = BRC_PARAMS(cantilever_params, struct cantilever_params),
     .columns = BRC_FIELDSET(cantilever_columns, struct cantilever_columns),

@@ -15,6 +15,7 @@ static int place(struct brc_sim *sim)
 const struct brc_rig_type brc_rig_compression = {
     .name = "compression",
     .meaning = "unconfined compression along z",
+    .physics = 1,
     .keys = BRC_LOADING_KEYS BRC_CURVE_KEYS BRC_MODULI_KEYS "friction",
     BRC_COMPRESSION_RESULTS,
     BRC_TWO_PLATENS,

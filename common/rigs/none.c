@@ -27,6 +27,7 @@ static void results(const struct brc_sim *sim, struct brc_measured *out)
 
 const struct brc_rig_type brc_rig_none = {.name = "none",
                                           .meaning = "no platens",
+                                          .physics = 1,
                                           .keys = "sample_steps",
                                           .sides = BRC_CORE_SIDES,
                                           .place = place,

@@ -15,6 +15,9 @@ static const struct brc_param test_params[] = {BRC_PARAM_LIST(BRC_TEST_PARAMS)};
 #undef BRC_OWNER
 const struct brc_param_list brc_test_param_list = BRC_PARAMS(test_params, struct brc_test_params);
 
+const struct brc_physics brc_rigs_physics[] = {
+    {"loading", 1, NULL}, {"measures", 1, NULL}, {NULL, 0, NULL}};
+
 #define BRC_RIG(symbol) extern const struct brc_rig_type symbol;
 BRC_RIGS
 #undef BRC_RIG

@@ -10,6 +10,8 @@
 #define BRC_RIG_DEFAULT "compression"
 
 enum { BRC_MAX_RIGS = 32 };
+/* Versions of what tests share: the loading, and what is measured by curve, gauge and readings. */
+extern const struct brc_physics brc_rigs_physics[];
 int brc_rigs_count(void);
 const struct brc_rig_type *brc_rigs_at(int i);
 /* Number of the test of that name, -1: there is none. */

@@ -162,6 +162,7 @@ static void restore(struct brc_sim *sim)
 const struct brc_rig_type brc_rig_triaxial = {
     .name = "triaxial",
     .meaning = "compression along z under a pressure on the sides",
+    .physics = 1,
     .keys = BRC_LOADING_KEYS BRC_CURVE_KEYS BRC_MODULI_KEYS "friction",
     .params = BRC_PARAMS(triaxial_params, struct triaxial_params),
     .state = BRC_FIELDSET(triaxial_state, struct triaxial),

@@ -495,6 +495,7 @@ const struct brc_rig_type brc_rig_true_triaxial = {
     .name = "true_triaxial",
     .meaning = "a box between six platens, along a path of stresses and strains",
     /* without strain_max: stages say where they end */
+    .physics = 1,
     .keys = "loading rate target rate_min rate_max stop_drop " BRC_CURVE_KEYS BRC_MODULI_KEYS
             "friction",
     .params = BRC_PARAMS(true_triaxial_params, struct true_triaxial_params),

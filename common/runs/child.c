@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_SLOTS = BRC_PROGRESS_MAX_RUNS };
+enum { MAX_SLOTS = BRC_QUEUE_MAX };
 enum { STOP_MS = 300 }; /* between two looks for a signal */
 
 /* A place for a run in progress. */

@@ -16,10 +16,12 @@ struct brc_outcome {
     struct brc_summary summary;
 };
 
+enum { BRC_QUEUE_MAX = 256 };
 struct brc_queue {
-    int n, at_once; /* runs, and how many of them at a time: BRC_PROGRESS_MAX_RUNS at most */
+    int n, at_once; /* runs, and how many of them at a time: BRC_QUEUE_MAX at most */
     void *user;
-    struct brc_progress *progress; /* gets the reports, run i those of line i; NULL: nobody does */
+    struct brc_progress *progress; /* gets the reports, run i those of line i; NULL: nobody does;
+                                    * else n is at most BRC_PROGRESS_MAX_RUNS */
     /* What a failure to start run i calls it. */
     const char *(*name)(const void *user, int i);
     /* Does run i. Called in a process of its own: nothing but *out and the message comes back. */

@@ -18,6 +18,11 @@ static const struct brc_param specimen_params[] = {BRC_PARAM_LIST(BRC_SPECIMEN_P
 #undef BRC_OWNER
 const struct brc_param_list brc_specimen_param_list =
     BRC_PARAMS(specimen_params, struct brc_specimen_params);
+const struct brc_physics brc_specimen_physics[] = {{"cells", 1, NULL},
+                                                   {"packing", 1, "specimen.grains=packing"},
+                                                   {"grid", 1, "specimen.grains=grid"},
+                                                   {"mesh", 1, "specimen.grains=mesh"},
+                                                   {NULL, 0, NULL}};
 
 enum { MAX_FILE_PLANES = 1000 };
 /* Files of planes have nine digits or more: what differs by less is one plane. Three components and

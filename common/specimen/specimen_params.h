@@ -62,11 +62,13 @@ enum { BRC_MAX_GRAINS = 10000000 };
          "facets below this part of the mean area are not contacts",                               \
          "grains=packing|grid|points|tess")                                                        \
     FLAG(cache, "on", "keep finished packings on disk (BRECCIA_CACHE, else ~/.cache/breccia)",     \
-         "grains=packing", .flags = BRC_PARAM_MAY_CHANGE)
+         "grains=packing", .flags = BRC_PARAM_MAY_CHANGE | BRC_PARAM_COST)
 
 struct brc_specimen_params {
     BRC_PARAM_MEMBERS(BRC_SPECIMEN_PARAMS)
 };
 extern const struct brc_param_list brc_specimen_param_list;
+/* Versions of what this folder computes: cells and facets, and the ways to seeds. */
+extern const struct brc_physics brc_specimen_physics[];
 
 #endif
