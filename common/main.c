@@ -15,9 +15,9 @@
 #include "common/runs/converge.h"
 #include "common/runs/export.h"
 #include "common/output/info.h"
+#include "common/runs/reference.h"
 #include "common/runs/run.h"
 #include "common/runs/sweep.h"
-#include "common/rigs/readings.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -180,58 +180,22 @@ static int act_envelope(struct brc_context *ctx, const struct options *o)
                                                            .is_forced = o->ladder.run.is_forced});
 }
 
-/* One section, or all. The lists are those of the reader of case files, so that what is printed is
- * what is read. */
 static int act_params(struct brc_context *ctx, const struct options *o)
 {
-    struct brc_case_section s;
-    char hint[BRC_HINT_SIZE];
-    struct brc_nearest nearest = {.text = o->operand};
-    bool is_found = false;
-    for (int i = 0; brc_case_section(NULL, i, &s); i++) {
-        if (o->operand)
-            brc_nearest_add(&nearest, s.name);
-        if (o->operand && strcmp(o->operand, s.name) != 0)
-            continue;
-        if (is_found)
-            putchar('\n');
-        brc_params_print(stdout, s.name, s.list);
-        is_found = true;
-    }
-    if (!is_found)
-        BRC_FAIL(ctx, BRC_ERR_USAGE, "no section '%.60s'%s; breccia params lists all", o->operand,
-                 brc_nearest_hint(&nearest, hint));
-    return 0;
+    return brc_reference_params(ctx, o->operand);
 }
 
-/* With the papers that they are from, by which readers know them; the names are no more than keys
- * of cases. */
 static int act_models(struct brc_context *ctx, const struct options *o)
 {
     (void)ctx, (void)o;
-    for (int i = 0; i < brc_registry_count(); i++)
-        printf("%-12s %s\n", brc_registry_at(i)->name, brc_registry_at(i)->citation);
+    brc_reference_models();
     return 0;
 }
 
-static void print_quantities(const struct brc_quantity *q, int n)
-{
-    for (int i = 0; i < n; i++)
-        printf("  %-20s %-3s %s\n", q[i].name, q[i].unit, q[i].meaning);
-}
-
-/* As the tests declare themselves: one that is added stands here, with its keys and what it
- * measures, without a line of this file. */
 static int act_tests(struct brc_context *ctx, const struct options *o)
 {
     (void)ctx, (void)o;
-    for (int i = 0; i < brc_rigs_count(); i++) {
-        const struct brc_rig_type *rig = brc_rigs_at(i);
-        printf("%s: %s\n  keys: %s\n", rig->name, rig->meaning, rig->keys);
-        print_quantities(rig->quantities, rig->n_quantities);
-    }
-    printf("every test:\n");
-    print_quantities(brc_readings_quantities, BRC_N_READINGS);
+    brc_reference_tests();
     return 0;
 }
 

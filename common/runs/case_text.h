@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parameters of a run as text: what states keep to know whether the case that resumes them is
- * theirs, and what names the runs of a ladder. run.c, case_keep.c and the ladder call it; it knows
- * sections and parameters, and no file. */
+ * theirs. run.c and case_keep.c call it; it knows sections and parameters, and no file. */
 #ifndef BRC_CASE_TEXT_H
 #define BRC_CASE_TEXT_H
 

@@ -16,6 +16,7 @@
 #include "common/runs/converge_plot.h"
 #include "common/runs/converge_record.h"
 #include "common/runs/converge_table.h"
+#include "common/runs/task.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -88,7 +89,6 @@ static int try_model(struct ladder *l, const struct brc_specimen *specimen,
     struct brc_sim sim;
     BRC_TRY(brc_case_sim(l->ctx, l->study.options->run.run_case, m->model, specimen, &sim));
     m->test = sim.rig.params;
-    m->specimen = brc_facets_hash(&specimen->facets);
     l->study.n_results = brc_rigs_results(&sim, l->study.results);
     brc_sim_free(&sim);
     m->setting = brc_alloc(l->ctx, BRC_CONVERGE_MAX_SETTINGS, sizeof *m->setting);
@@ -156,22 +156,11 @@ static int prepare(struct ladder *l)
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
-/* What is in the way of a run is not its setting's fault: the ladder ends, and the run does not
- * count as spoilt. */
-static int check_place(struct brc_context *ctx, const struct brc_run_options *o)
-{
-    int code = brc_run_check_folder(ctx, o);
-    return code == BRC_ERR_INPUT ? (ctx->code = BRC_ERR_USAGE) : code;
-}
-
-/* Where the run of a task lies while it is unfinished: by its key, so that it is found again
- * whatever is asked for the next time. */
 static int task_folder(struct brc_context *ctx, const struct ladder *l, const struct task *t,
                        char dir[BRC_PATH_SIZE])
 {
-    char name[64];
-    snprintf(name, sizeof name, "converge_unfinished/%016" PRIx64, t->setting->run[t->seed].key);
-    return brc_folder_path(ctx, l->study.options->run.dir, name, dir);
+    return brc_task_folder(ctx, l->study.options->run.dir, "converge_unfinished",
+                           t->setting->run[t->seed].key, dir);
 }
 
 static const char *name_of(const void *user, int i)
@@ -180,35 +169,19 @@ static const char *name_of(const void *user, int i)
     return l->task[i].model->model->name;
 }
 
-/* In the child: the case of the setting, its specimen, the run. A run of the same key that was
- * stopped goes on from its state; one that has saved none starts anew. */
+/* In the child: the case of the setting, then as any run of many. */
 static int run_task(struct brc_context *ctx, const void *user, int i, struct brc_progress *progress,
                     struct brc_summary *out)
 {
     const struct ladder *l = user;
     const struct task *t = &l->task[i];
     const struct brc_converge_options *o = l->study.options;
-    struct brc_specimen specimen = {0};
     struct brc_case run_case;
     char dir[BRC_PATH_SIZE];
     BRC_TRY(task_folder(ctx, l, t, dir));
-    bool has_begun = brc_run_has_begun(dir);
-    bool goes_on = o->run.is_resumed && has_begun && brc_folder_has(dir, "state.h5");
     int code = brc_converge_case(ctx, o->run.run_case, t->setting, t->seed, &run_case);
     if (code == 0)
-        code = brc_specimen_create(ctx, &run_case.specimen, &specimen);
-    const struct brc_run_options options = {.run_case = &run_case,
-                                            .model = t->model->model,
-                                            .specimen = &specimen,
-                                            .dir = dir,
-                                            .is_resumed = goes_on,
-                                            .is_forced = has_begun && !goes_on,
-                                            .progress = progress};
-    if (code == 0)
-        code = check_place(ctx, &options);
-    if (code == 0)
-        code = brc_run(ctx, &options, out);
-    brc_specimen_free(&specimen);
+        code = brc_task_run(ctx, &run_case, t->model->model, dir, o->run.is_resumed, progress, out);
     brc_case_free(&run_case);
     return code;
 }
@@ -265,11 +238,9 @@ static int read_outcome(struct brc_context *ctx, void *user, int i, const struct
     struct task *t = &l->task[i];
     struct brc_converge_run *run = &t->setting->run[t->seed];
     char dir[BRC_PATH_SIZE];
-    bool is_spoilt = o->code == BRC_ERR_BLOWUP || o->code == BRC_ERR_ENERGY ||
-                     o->code == BRC_ERR_INPUT || o->code == BRC_ERR_GEOMETRY;
     if (o->code == BRC_ERR_NOT_BEGUN)
         return fail_interrupted(l);
-    if (o->code != 0 && !is_spoilt)
+    if (o->code != 0 && !brc_task_is_result(o->code))
         BRC_FAIL(ctx, o->code, "%s: %s", name_of(l, i), o->message);
     run->steps = o->summary.steps;
     run->dt = o->summary.dt;

@@ -4,7 +4,7 @@
  * its own uncertainty. */
 #include "common/runs/converge_axes.h"
 
-#include "common/runs/case_text.h"
+#include "common/runs/run_key.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -57,19 +57,13 @@ int brc_converge_case(struct brc_context *ctx, const struct brc_case *run_case,
     return brc_case_change(ctx, run_case, line, n, out);
 }
 
-/* Of all that a run hangs on. The version is a part of it, as another one may compute otherwise; so
- * is the specimen, for which the text has names of files at most. */
 static int make_key(struct brc_context *ctx, const struct brc_case *run_case,
-                    const struct brc_converge_model *m, uint64_t *key)
+                    const struct brc_model *model, uint64_t *hash)
 {
-    const struct brc_model *model = m->model;
-    char *text = brc_case_text(ctx, run_case, model);
-    if (!text)
-        return BRC_ERR_MEMORY;
-    *key = brc_hash_bytes(text, strlen(text), brc_hash_bytes(model->name, strlen(model->name), 0));
-    *key = brc_hash_bytes(BRC_VERSION, strlen(BRC_VERSION), *key);
-    *key = brc_hash_bytes(&m->specimen, sizeof m->specimen, *key);
-    free(text);
+    struct brc_run_key key;
+    BRC_TRY(brc_run_key_make(ctx, run_case, model, &key));
+    *hash = key.hash;
+    free(key.text);
     return 0;
 }
 
@@ -88,7 +82,7 @@ static int add(struct brc_context *ctx, const struct brc_converge_options *optio
         struct brc_case run_case;
         int code = brc_converge_case(&own, options->run.run_case, s, i, &run_case);
         if (code == 0)
-            code = make_key(&own, &run_case, m, &s->run[i].key);
+            code = make_key(&own, &run_case, m->model, &s->run[i].key);
         brc_case_free(&run_case);
         if (code == BRC_ERR_INPUT) {
             brc_log(ctx, "%s %s is left out: %s", s->axis, s->label, own.message);

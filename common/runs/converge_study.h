@@ -21,7 +21,7 @@ enum { BRC_CONVERGE_MAX_LINES = 6 };
 
 /* A run of a setting on one specimen, as the record keeps it. */
 struct brc_converge_run {
-    uint64_t key; /* of all parameters of the run */
+    uint64_t key; /* of the run: run_key.h */
     bool is_done;
     char ended_by[64];
     int64_t steps;
@@ -54,8 +54,7 @@ enum {
 struct brc_converge_model {
     const struct brc_model *model;
     struct brc_test_params test; /* with its automatic rates filled in */
-    uint64_t specimen; /* hash of the case's own: what files that it names hold is a part of it */
-    double mean_rate;  /* 1/s, of the case up to the peak, first specimen; 0: not run yet */
+    double mean_rate; /* 1/s, of the case up to the peak, first specimen; 0: not run yet */
     int n;
     struct brc_converge_setting *setting; /* BRC_CONVERGE_MAX_SETTINGS */
 };
