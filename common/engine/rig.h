@@ -178,6 +178,9 @@ struct brc_test {
     X(int64_t, stage_events, "1", "events that are no sign of damage in it")                    \
     X(double, stage_strain, "1", "platen strain at which it began")                             \
     X(double, stage_sense, "1", "+1: the platen strain grows, -1: it falls")                    \
+    X(int64_t, is_flowing, "1", "nothing was damaged at the onset: the specimen yields")        \
+    X(double, stage_force, "N", "force at which it began")                                      \
+    X(double, stiffest, "N", "largest change of the force over the strain, in it")              \
     X(double, strain, "1", "platen strain, in the sense of the test")                           \
     X(double, force, "N", "mean platen force now, in the sense of the test")                    \
     X(double, force_sum, "N", "sum of force since the last row of the curve")                   \

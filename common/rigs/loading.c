@@ -28,6 +28,11 @@ static const double RATE_RISE = 0.05, RATE_FALL = 0.3;
 static const double AVALANCHE = 1.2, SLOWEST = 0.1;
 /* The load is lost below this part of its peak, and found again above that one. */
 static const double LOAD_LOST = 0.8, LOAD_FOUND = 0.95;
+/* It yields where the force over the strain falls below this part of its largest; no sign of it
+ * where the force is below this part of that on a platen, as in an isotropic stage. */
+static const double YIELDS = 0.5, NO_LOAD = 0.2;
+/* Past the peak the rate goes along with the strain up to this many times the onset's. */
+static const double FAR = 10;
 /* weight of a step in the mean kinetic energy of elastic loading */
 static const double ELASTIC_WEIGHT = 0.1;
 /* The rate stays for the first steps. The start is over after so many, over the target, at the
@@ -124,6 +129,21 @@ static bool is_steady(const struct brc_sim *sim)
     return is_calm || is_late || n_events(sim) > 0;
 }
 
+/* A cohesionless pack slides, and nothing breaks: that its stiffness falls tells it alone. The
+ * first steps are a wave, stiffer than the specimen, and tell nothing. */
+static double stiffness(const struct brc_rig *rig)
+{
+    double change = fabs(rig->force - rig->stage_force);
+    bool tells = rig->is_steady && change >= NO_LOAD * fabs(rig->platen[0].force);
+    return tells ? change / brc_loading_strain(rig) : 0;
+}
+
+static bool has_yielded(const struct brc_rig *rig)
+{
+    double now = stiffness(rig);
+    return now > 0 && now < YIELDS * rig->stiffest;
+}
+
 /* Up to the onset of damage: what kinetic energy goes with a rate, and whether damage has begun.
  * Shaking tells it, too, for models that soften before anything breaks; but not at the start, where
  * the specimen still shakes from its first load. */
@@ -133,8 +153,11 @@ static void watch_elastic(struct brc_sim *sim)
     double kinetic = fmax(sim->ledger.kinetic, DBL_MIN) / (rig->rate * rig->rate);
     double weight = rig->kinetic_elastic > 0 ? ELASTIC_WEIGHT : 1;
     rig->kinetic_elastic += weight * (kinetic - rig->kinetic_elastic);
+    rig->stiffest = fmax(rig->stiffest, stiffness(rig));
     bool is_shaken = rig->is_steady && rig->unbalanced > DAMAGING * rig->params.target;
-    if (is_shaken || n_events(sim) > 0)
+    bool is_damaged = is_shaken || n_events(sim) > 0;
+    rig->is_flowing = !is_damaged && has_yielded(rig);
+    if (is_damaged || rig->is_flowing)
         rig->strain_onset = brc_loading_strain(rig);
 }
 
@@ -143,18 +166,23 @@ static void watch_elastic(struct brc_sim *sim)
 static bool was_false_alarm(const struct brc_sim *sim)
 {
     const struct brc_rig *rig = &sim->rig;
-    return n_events(sim) == 0 && brc_loading_strain(rig) > BEYOND * rig->strain_onset &&
+    return n_events(sim) == 0 && !rig->is_flowing &&
+           brc_loading_strain(rig) > BEYOND * rig->strain_onset &&
            rig->unbalanced < STILL * rig->params.target;
 }
 
-/* Part of the rate that is left beside an avalanche, told by kinetic energy that loading at the
- * present rate does not explain. */
+/* Part of the rate that is left beside an avalanche. Where grains break, kinetic energy that
+ * loading at the present rate does not explain tells it, some steps before the load falls. Where
+ * they only slide past each other it tells nothing: a pack that flows moves with many times the
+ * kinetic energy of elastic loading, however slowly; whether it is in balance tells it there. */
 static double avalanche_factor(const struct brc_sim *sim, double base)
 {
     const struct brc_rig *rig = &sim->rig;
     double rate = fmax(rig->rate, base);
     double usual = AVALANCHE * rig->kinetic_elastic * rate * rate;
-    double excess = fmax(sim->ledger.kinetic, 0) / usual;
+    double excess = rig->is_flowing && n_events(sim) == 0
+                        ? rig->unbalanced / (DAMAGING * rig->params.target)
+                        : fmax(sim->ledger.kinetic, 0) / usual;
     return fmax(SLOWEST, 1 / (1 + excess * excess * excess * excess));
 }
 
@@ -166,7 +194,8 @@ static double wanted_rate(const struct brc_sim *sim)
     double target = rig->params.target / sim->dt;
     if (rig->strain_onset == 0)
         return fmax(rig->rate, ELASTIC * target * brc_loading_strain(rig));
-    double base = target * (rig->is_post_peak ? brc_loading_strain(rig) : rig->strain_onset);
+    double far = fmin(brc_loading_strain(rig), FAR * rig->strain_onset);
+    double base = target * (rig->is_post_peak ? far : rig->strain_onset);
     return base * avalanche_factor(sim, base);
 }
 
@@ -258,6 +287,8 @@ void brc_loading_begin_stage(struct brc_sim *sim, double sense)
     rig->stage_events = (int64_t)sim->events.table.n;
     rig->stage_strain = rig->strain;
     rig->stage_sense = sense;
+    rig->stage_force = rig->force;
+    rig->stiffest = 0;
     rig->strain_onset = rig->kinetic_elastic = 0;
     rig->force_peak = rig->strain_peak = 0;
     rig->is_post_peak = rig->is_steady = 0;
