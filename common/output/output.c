@@ -97,9 +97,9 @@ static void json_energy(FILE *out, const char *key, const struct brc_ledger *l, 
 {
     const char *comma = "";
     fprintf(out, "  \"%s\": {", key);
-#define TERM(name, sign, meaning)                   \
-    fprintf(out, "%s\n    \"" #name "\": ", comma); \
-    brc_output_json_number(out, is_known ? l->name : NAN);     \
+#define TERM(name, sign, meaning)                          \
+    fprintf(out, "%s\n    \"" #name "\": ", comma);        \
+    brc_output_json_number(out, is_known ? l->name : NAN); \
     comma = ",";
     BRC_LEDGER_TERMS(TERM)
 #undef TERM

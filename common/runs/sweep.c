@@ -10,6 +10,7 @@
 #include "common/runs/child.h"
 #include "common/runs/ranks.h"
 #include "common/runs/sweep_estimate.h"
+#include "common/runs/sweep_plot.h"
 #include "common/runs/sweep_table.h"
 #include "common/runs/task.h"
 
@@ -47,7 +48,8 @@ struct sweep {
  */
 static int check_folder(struct sweep *s)
 {
-    static const char *const names[] = {"sweep.csv", "runs.csv", "sweep.h5"};
+    static const char *const names[] = {"sweep.csv", "runs.csv", "sweep.h5", "sweep.gp",
+                                        "sweep.png"};
     const struct brc_sweep_options *o = s->options;
     char path[BRC_PATH_SIZE], line[16] = "";
     BRC_TRY(brc_folder_check_writable(s->ctx, o->dir));
@@ -418,6 +420,7 @@ static int run(struct sweep *s)
     BRC_TRY(brc_sweep_print(s->ctx, stdout, &s->runs));
     fflush(stdout);
     BRC_TRY(brc_sweep_write(s->ctx, &s->runs, s->options->dir));
+    BRC_TRY(brc_sweep_plot(s->ctx, &s->runs, s->options->dir));
     int code = part > 0 ? do_verify(s, part) : 0;
     code = code ? code : check_failures(s);
     if (code == 0 || code == BRC_ERR_RUNS)

@@ -1,149 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cell is the runs of a group that differ in what is averaged over alone. Tables are long and
- * tidy: programs that draw and test take them so, and axes of all groups fit into one. Failed runs
- * count as missing, and are counted. */
+/* Tables are long and tidy: programs that draw and test take them so, and axes of all groups fit
+ * into one. Failed runs count as missing, and are counted. */
 #include "common/runs/sweep_table.h"
 
-#include "common/base/text_file.h"
 #include "common/output/columns.h"
-#include "common/rigs/readings.h"
 #include "common/runs/compare.h"
+#include "common/runs/sweep_cells.h"
 
-#include <gsl/gsl_cdf.h>
-#include <gsl/gsl_statistics_double.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- statistics ---------------------------------------------------------------------------- */
-
-struct brc_sweep_mean brc_sweep_mean(const double *value, size_t n)
-{
-    struct brc_sweep_mean m = {0, NAN, NAN, NAN, NAN};
-    double sum = 0, squares = 0;
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(value[i])) {
-            sum += value[i];
-            m.n++;
-        }
-    if (m.n == 0)
-        return m;
-    m.mean = sum / m.n;
-    if (m.n == 1)
-        return m;
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(value[i]))
-            squares += (value[i] - m.mean) * (value[i] - m.mean);
-    m.standard_error = sqrt(squares / (m.n - 1) / m.n);
-    double half = gsl_cdf_tdist_Pinv(0.975, m.n - 1) * m.standard_error;
-    m.low = m.mean - half;
-    m.high = m.mean + half;
-    return m;
-}
-
-/* ---- cells --------------------------------------------------------------------------------- */
-
-/* Runs of one cell. */
-struct cell {
-    size_t n;
-    const struct brc_sweep_run **run;
-    int n_failed, n_done;
-    double cpu_s; /* a run */
-};
-struct cells {
-    struct brc_context *ctx;
-    struct brc_pool pool;
-    const struct brc_sweep_runs *runs;
-    size_t n;
-    struct cell *cell;
-    double *value; /* of the runs of one cell */
-};
-
-static bool is_same_cell(const struct brc_sweep_run *a, const struct brc_sweep_run *b)
-{
-    if (a->group != b->group)
-        return false;
-    for (size_t k = 0; k < a->group->n_axes; k++)
-        if (!a->group->axis[k].is_over && a->at[k] != b->at[k])
-            return false;
-    return true;
-}
-
-static bool is_good(const struct brc_sweep_run *run)
-{
-    return run->is_done && run->kept.code == 0;
-}
-
-static void count(struct cell *c)
-{
-    for (size_t i = 0; i < c->n; i++) {
-        c->n_done += c->run[i]->is_done;
-        c->n_failed += c->run[i]->is_done && !is_good(c->run[i]);
-        if (is_good(c->run[i]))
-            c->cpu_s += c->run[i]->kept.cpu_s;
-    }
-    c->cpu_s = c->n_done > c->n_failed ? c->cpu_s / (c->n_done - c->n_failed) : NAN;
-}
-
-/* In the order of their first runs. */
-static int find_cells(struct cells *c)
-{
-    const struct brc_sweep_runs *runs = c->runs;
-    c->cell = brc_pool_alloc(c->ctx, &c->pool, runs->n, sizeof *c->cell);
-    c->value = brc_pool_alloc(c->ctx, &c->pool, runs->n, sizeof *c->value);
-    if (c->pool.is_failed)
-        return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < runs->n; i++) {
-        const struct brc_sweep_run *run = &runs->run[i];
-        size_t k = 0, most = 1;
-        while (k < c->n && !is_same_cell(c->cell[k].run[0], run))
-            k++;
-        for (size_t a = 0; a < run->group->n_axes; a++)
-            most *= run->group->axis[a].is_over ? run->group->axis[a].n : 1;
-        if (k == c->n) {
-            /* NOLINTNEXTLINE(bugprone-sizeof-expression): an array of pointers is meant */
-            c->cell[k].run = brc_pool_alloc(c->ctx, &c->pool, most, sizeof *c->cell[k].run);
-            if (!c->cell[k].run)
-                return BRC_ERR_MEMORY;
-            c->n++;
-        }
-        c->cell[k].run[c->cell[k].n++] = run;
-    }
-    for (size_t k = 0; k < c->n; k++)
-        count(&c->cell[k]);
-    return 0;
-}
-
-static struct brc_sweep_mean mean_of(struct cells *c, const struct cell *cell, const char *quantity)
-{
-    for (size_t i = 0; i < cell->n; i++)
-        c->value[i] = is_good(cell->run[i]) ? brc_kept_result(&cell->run[i]->kept, quantity) : NAN;
-    return brc_sweep_mean(c->value, cell->n);
-}
-
-/* Quantity number i of what the run's test measures, NULL past the last. */
-static const struct brc_quantity *quantity_at(const struct brc_rig_type *rig, int i)
-{
-    int reading = i - rig->n_quantities;
-    return reading < 0                ? &rig->quantities[i]
-           : reading < BRC_N_READINGS ? &brc_readings_quantities[reading]
-                                      : NULL;
-}
-
-static bool is_collected(const struct brc_sweep_group *g, const char *name)
-{
-    for (size_t i = 0; i < g->n_collect; i++)
-        if (strcmp(g->collect[i], name) == 0)
-            return true;
-    return g->n_collect == 0;
-}
-
 /* ---- columns ------------------------------------------------------------------------------- */
 
 /* A table with a column for each axis of any group, as both tables begin. That of runs tells case
  * and model anyway. */
-static int begin(struct cells *c, struct brc_columns *t, const char *name, size_t n_rows,
+static int begin(struct brc_sweep_cells *c, struct brc_columns *t, const char *name, size_t n_rows,
                  bool is_of_runs)
 {
     const struct brc_sweep_plan *plan = c->runs->plan;
@@ -173,8 +46,8 @@ static void put_axes(const struct brc_columns *t, size_t row, const struct brc_s
                 t->column[k].text[row] = g->axis[a].value[run->at[a]].label;
 }
 
-static int add_numbers(struct cells *c, struct brc_columns *t, const char *const (*name)[2],
-                       size_t n)
+static int add_numbers(struct brc_sweep_cells *c, struct brc_columns *t,
+                       const char *const (*name)[2], size_t n)
 {
     for (size_t i = 0; i < n; i++)
         BRC_TRY(brc_columns_add(c->ctx, t, name[i][0], name[i][1], false));
@@ -182,7 +55,7 @@ static int add_numbers(struct cells *c, struct brc_columns *t, const char *const
 }
 
 /* A text for a column of the table of runs. */
-static int put_text(struct cells *c, const char **at, const char *text)
+static int put_text(struct brc_sweep_cells *c, const char **at, const char *text)
 {
     char *kept = brc_pool_alloc(c->ctx, &c->pool, strlen(text) + 1, 1);
     *at = kept ? strcpy(kept, text) : "";
@@ -200,7 +73,7 @@ static const char *const run_numbers[][2] = {
 enum { N_RUN_TEXTS = sizeof run_texts / sizeof run_texts[0] };
 enum { N_RUN_NUMBERS = sizeof run_numbers / sizeof run_numbers[0] };
 
-static int put_run(struct cells *c, struct brc_columns *t, size_t first, size_t row)
+static int put_run(struct brc_sweep_cells *c, struct brc_columns *t, size_t first, size_t row)
 {
     const struct brc_sweep_run *run = &c->runs->run[row];
     const struct brc_kept_run *k = &run->kept;
@@ -228,11 +101,11 @@ static int put_run(struct cells *c, struct brc_columns *t, size_t first, size_t 
 
 /* A column for each result that any run has, collected or not: the file is the record as a table.
  */
-static int put_results(struct cells *c, struct brc_columns *t, size_t first)
+static int put_results(struct brc_sweep_cells *c, struct brc_columns *t, size_t first)
 {
     for (size_t i = 0; i < c->runs->n; i++) {
         const struct brc_quantity *q;
-        for (int k = 0; (q = quantity_at(c->runs->run[i].rig, k)) != NULL; k++) {
+        for (int k = 0; (q = brc_sweep_quantity(c->runs->run[i].rig, k)) != NULL; k++) {
             size_t at = first;
             while (at < t->n && strcmp(t->column[at].name, q->name) != 0)
                 at++;
@@ -241,14 +114,15 @@ static int put_results(struct cells *c, struct brc_columns *t, size_t first)
             BRC_TRY(brc_columns_add(c->ctx, t, q->name, q->unit, false));
             for (size_t row = 0; row < c->runs->n; row++)
                 brc_columns_last(t)->number[row] =
-                    is_good(&c->runs->run[row]) ? brc_kept_result(&c->runs->run[row].kept, q->name)
-                                                : NAN;
+                    brc_sweep_is_good(&c->runs->run[row])
+                        ? brc_kept_result(&c->runs->run[row].kept, q->name)
+                        : NAN;
         }
     }
     return 0;
 }
 
-static int make_runs(struct cells *c, struct brc_columns *t)
+static int make_runs(struct brc_sweep_cells *c, struct brc_columns *t)
 {
     BRC_TRY(begin(c, t, "runs", c->runs->n, true));
     size_t first = t->n;
@@ -267,10 +141,10 @@ static const char *const mean_numbers[][2] = {
     {"ci_high", ""}, {"cpu_s", "s"}, {"runs", ""},           {"failed", ""}};
 enum { N_MEAN_NUMBERS = sizeof mean_numbers / sizeof mean_numbers[0] };
 
-static void put_mean(struct cells *c, struct brc_columns *t, size_t row, size_t first,
-                     const struct cell *cell, const struct brc_quantity *q)
+static void put_mean(struct brc_sweep_cells *c, struct brc_columns *t, size_t row, size_t first,
+                     const struct brc_sweep_cell *cell, const struct brc_quantity *q)
 {
-    struct brc_sweep_mean m = mean_of(c, cell, q->name);
+    struct brc_sweep_mean m = brc_sweep_cell_mean(c, cell, q->name);
     const double number[] = {m.n,    m.mean,      m.standard_error, m.low,
                              m.high, cell->cpu_s, cell->n_done,     cell->n_failed};
     put_axes(t, row, cell->run[0], false);
@@ -281,7 +155,7 @@ static void put_mean(struct cells *c, struct brc_columns *t, size_t row, size_t 
 }
 
 /* A first pass counts the rows. */
-static int make_means(struct cells *c, struct brc_columns *t)
+static int make_means(struct brc_sweep_cells *c, struct brc_columns *t)
 {
     size_t n_rows = 0, first = 0;
     for (int is_counted = 0; is_counted < 2; is_counted++) {
@@ -289,8 +163,8 @@ static int make_means(struct cells *c, struct brc_columns *t)
         for (size_t k = 0; k < c->n; k++) {
             const struct brc_sweep_run *run = c->cell[k].run[0];
             const struct brc_quantity *q;
-            for (int i = 0; (q = quantity_at(run->rig, i)) != NULL; i++) {
-                if (!is_collected(run->group, q->name))
+            for (int i = 0; (q = brc_sweep_quantity(run->rig, i)) != NULL; i++) {
+                if (!brc_sweep_is_collected(run->group, q->name))
                     continue;
                 if (is_counted)
                     put_mean(c, t, row, first, &c->cell[k], q);
@@ -309,11 +183,10 @@ static int make_means(struct cells *c, struct brc_columns *t)
     return 0;
 }
 
-static int write_all(struct cells *c, const char *dir)
+static int write_all(struct brc_sweep_cells *c, const char *dir)
 {
     struct brc_columns means, runs;
     const struct brc_columns *const both[] = {&means, &runs};
-    BRC_TRY(find_cells(c));
     BRC_TRY(make_means(c, &means));
     BRC_TRY(make_runs(c, &runs));
     BRC_TRY(brc_columns_csv(c->ctx, &means, dir, "sweep.csv"));
@@ -323,29 +196,17 @@ static int write_all(struct cells *c, const char *dir)
 
 int brc_sweep_write(struct brc_context *ctx, const struct brc_sweep_runs *runs, const char *dir)
 {
-    struct cells c = {.ctx = ctx, .runs = runs};
-    int code = write_all(&c, dir);
-    brc_pool_free(&c.pool);
+    struct brc_sweep_cells c;
+    int code = brc_sweep_cells_make(ctx, runs, &c);
+    if (code == 0)
+        code = write_all(&c, dir);
+    brc_sweep_cells_free(&c);
     return code;
 }
 
 /* ---- for readers --------------------------------------------------------------------------- */
 
 enum { MAX_SHOWN = 4, VALUE_WIDTH = 24 };
-
-/* What a group shows: the first that it collects, in its order, or that its test measures. */
-static int choose_shown(const struct brc_sweep_run *run,
-                        const struct brc_quantity *shown[MAX_SHOWN])
-{
-    const struct brc_sweep_group *g = run->group;
-    const struct brc_quantity *q;
-    int n = 0;
-    for (size_t k = 0; k < (g->n_collect > 0 ? g->n_collect : 1); k++)
-        for (int i = 0; (q = quantity_at(run->rig, i)) != NULL && n < MAX_SHOWN; i++)
-            if (g->n_collect == 0 || strcmp(q->name, g->collect[k]) == 0)
-                shown[n++] = q;
-    return n;
-}
 
 /* Of the column of an axis: its name and its values. */
 static int width_of(const struct brc_sweep_axis *axis)
@@ -357,16 +218,16 @@ static int width_of(const struct brc_sweep_axis *axis)
 }
 
 /* The largest mean of the group decides on the unit, so that a column has one. */
-static struct brc_shown unit_of(struct cells *c, size_t first, size_t end,
+static struct brc_shown unit_of(struct brc_sweep_cells *c, size_t first, size_t end,
                                 const struct brc_quantity *q)
 {
     double most = 0;
     for (size_t k = first; k < end; k++)
-        most = fmax(most, fabs(mean_of(c, &c->cell[k], q->name).mean));
+        most = fmax(most, fabs(brc_sweep_cell_mean(c, &c->cell[k], q->name).mean));
     return brc_compare_unit(q->name, q->unit, most);
 }
 
-static void print_cell(struct cells *c, FILE *out, const struct cell *cell,
+static void print_cell(struct brc_sweep_cells *c, FILE *out, const struct brc_sweep_cell *cell,
                        const struct brc_quantity *const *shown, const struct brc_shown *unit, int n)
 {
     const struct brc_sweep_run *run = cell->run[0];
@@ -377,7 +238,7 @@ static void print_cell(struct cells *c, FILE *out, const struct cell *cell,
                     run->group->axis[a].value[run->at[a]].label);
     fprintf(out, "%4d", cell->n_done - cell->n_failed);
     for (int i = 0; i < n; i++) {
-        struct brc_sweep_mean m = mean_of(c, cell, shown[i]->name);
+        struct brc_sweep_mean m = brc_sweep_cell_mean(c, cell, shown[i]->name);
         brc_compare_digits(unit[i].factor * m.mean, mean);
         brc_compare_digits(unit[i].factor * m.standard_error, error);
         snprintf(both, sizeof both, m.n > 1 ? "%s +- %s" : "%s", mean, error);
@@ -389,13 +250,13 @@ static void print_cell(struct cells *c, FILE *out, const struct cell *cell,
     fputc('\n', out);
 }
 
-static void print_group(struct cells *c, FILE *out, size_t first, size_t end)
+static void print_group(struct brc_sweep_cells *c, FILE *out, size_t first, size_t end)
 {
     const struct brc_sweep_run *run = c->cell[first].run[0];
     const struct brc_quantity *shown[MAX_SHOWN];
     struct brc_shown unit[MAX_SHOWN];
     char head[120];
-    int n = choose_shown(run, shown), width = 14 + n * VALUE_WIDTH;
+    int n = brc_sweep_shown(run, shown, MAX_SHOWN), width = 14 + n * VALUE_WIDTH;
     fprintf(out, "\n%s\n", run->group->name);
     for (size_t a = 0; a < run->group->n_axes; a++)
         if (!run->group->axis[a].is_over) {
@@ -416,8 +277,8 @@ static void print_group(struct cells *c, FILE *out, size_t first, size_t end)
 
 int brc_sweep_print(struct brc_context *ctx, FILE *out, const struct brc_sweep_runs *runs)
 {
-    struct cells c = {.ctx = ctx, .runs = runs};
-    int code = find_cells(&c);
+    struct brc_sweep_cells c;
+    int code = brc_sweep_cells_make(ctx, runs, &c);
     if (code == 0)
         fprintf(out, "%s\n", *runs->plan->title ? runs->plan->title : runs->plan->path);
     for (size_t first = 0, end; code == 0 && first < c.n; first = end) {
@@ -427,6 +288,6 @@ int brc_sweep_print(struct brc_context *ctx, FILE *out, const struct brc_sweep_r
     }
     if (code == 0)
         fputs("\nmean +- standard error\n", out);
-    brc_pool_free(&c.pool);
+    brc_sweep_cells_free(&c);
     return code;
 }

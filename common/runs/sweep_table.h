@@ -8,15 +8,6 @@
 
 #include <stdio.h>
 
-/* Of n values that are there. */
-struct brc_sweep_mean {
-    int n;
-    double mean, standard_error; /* NAN: too few values */
-    double low, high;            /* of the 95 % interval of the mean by Student's t */
-};
-/* NAN is a value that is not there. */
-struct brc_sweep_mean brc_sweep_mean(const double *value, size_t n);
-
 /* dir/sweep.csv, runs.csv and sweep.h5, which holds both. */
 int brc_sweep_write(struct brc_context *ctx, const struct brc_sweep_runs *runs, const char *dir);
 /* The means of what is collected, a table a group, for readers. */

@@ -13,6 +13,8 @@ test: {kind: compression, loading: fixed, rate: 2e-5 1/s, strain_max: 4e-4}
 output: {plots: off}
 END
 
+printf 'breccia: 1\ncase: case.yaml\naxes: {specimen.seed: 1..4}\n' >sweep.yaml
+
 # `pml` names the layer of Open MPI that carries messages: with one that there is not, MPI_Init ends the
 # process
 bare() {
@@ -24,6 +26,7 @@ all_commands() {
     good bare "$breccia" compare case.yaml -o "$1/pair" --quiet
     good bare "$breccia" converge case.yaml --observable E --axes step --seeds 1 --refine 2 --model vgcm \
         -o "$1/ladder"
+    good bare "$breccia" sweep sweep.yaml -o "$1/sweep"
     good bare "$breccia" info "$1/run/state.h5"
     good bare "$breccia" export "$1/run/state.h5" --table curve
     good bare "$breccia" params run
@@ -53,7 +56,7 @@ if unshare $as_root mount -t tmpfs none sealed 2>/dev/null; then
     # results must lie outside /tmp
     other=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d -p /var/tmp)
     trap 'rm -rf "$folder" "$other"' EXIT
-    cp case.yaml sealed.sh "$other"
+    cp case.yaml sweep.yaml sealed.sh "$other"
     (cd "$other" && unshare $as_root bash sealed.sh) || fail "with /tmp sealed"
 fi
 

@@ -65,6 +65,8 @@ expect 0 "results in all" $sweep -o all
 [ "$(wc -l <all/runs.csv)" -eq 19 ] || fail "rows of runs.csv"
 [ "$(wc -l <all/sweep.csv)" -eq 13 ] || fail "rows of sweep.csv"
 [ -s all/sweep.h5 ] || fail "no sweep.h5"
+if command -v gnuplot >/dev/null && [ ! -s all/sweep.png ]; then fail "no picture"; fi
+[ "$(grep -c '^1 ' all/sweep.gp)" -eq 4 ] || fail "points of the picture: 1x for two models and two results"
 [ ! -e all/unfinished ] || fail "finished runs leave folders"
 grep -q '"vgcm.e_bar": "97.6 GPa"' all/runs.jsonl || fail "2x is not twice the value"
 awk -F, '$1 == "all" && $2 == "vgcm" && $5 == "E_platen" { e[$4] = $8; n += $7 }

@@ -4,7 +4,7 @@
 #include "common/output/h5.h"
 #include "common/runs/run_key.h"
 #include "common/runs/sweep.h"
-#include "common/runs/sweep_table.h"
+#include "common/runs/sweep_cells.h"
 #include "tests/near.h"
 
 #include <stdio.h>
