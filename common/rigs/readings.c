@@ -19,6 +19,9 @@ const struct brc_quantity brc_readings_quantities[BRC_N_READINGS] = {
     {"broken_torsion", "1", "breaks in torsion"},
     {"work_at_peak", "J", "work of the platens up to the peak"},
     {"break_energy_at_peak", "J", "of it dissipated by breaks"},
+    {"drop_before_peak", "1", "largest fall of the load up to the peak, over the peak"},
+    {"strain_at_end", "1", "platen strain at the end, as strain_at_peak is counted"},
+    {"load_at_end", "1", "load there, over the peak"},
     {"crack_angle", "rad", "mean angle between cracks and the load"},
     {"crack_alignment", "1", "1: all cracks along the load, 0: all across it"},
     {"localisation", "1", "part of the broken area in the best plane, 2 grains thick"},
@@ -74,6 +77,28 @@ static void read_peak(const struct brc_sim *sim, struct brc_measured out[2])
         energy += e->energy[i];
     out[0] = measured(note ? NAN : work_to(rig, row), note);
     out[1] = measured(energy, note);
+}
+
+/* From a row to a later one, so that a load that shakes about a rise counts for little. */
+static double drop_before(const struct brc_rig *rig, size_t peak)
+{
+    double largest = 0, drop = 0;
+    for (size_t i = (size_t)rig->stage_row; i <= peak; i++) {
+        largest = fmax(largest, rig->curve.force[i]);
+        drop = fmax(drop, largest - rig->curve.force[i]);
+    }
+    return drop / rig->force_peak;
+}
+
+/* How brittle it is: how soon after the peak the load has fallen to what ended the test. */
+static void read_shape(const struct brc_sim *sim, struct brc_measured out[3])
+{
+    const struct brc_rig *rig = &sim->rig;
+    const char *note = brc_curve_why_no_peak(rig);
+    size_t last = rig->curve.table.n - 1; /* there is one if there is a peak */
+    out[0] = measured(note ? NAN : drop_before(rig, brc_curve_peak_row(rig)), note);
+    out[1] = measured(note ? NAN : rig->curve.strain[last] - rig->stage_strain, note);
+    out[2] = measured(note ? NAN : rig->curve.force[last] / rig->force_peak, note);
 }
 
 /* ---- principal stresses ---------------------------------------------------------------------- */
@@ -193,9 +218,10 @@ void brc_readings(const struct brc_sim *sim, struct brc_measured out[BRC_N_READI
         out[m] = measured((double)sim->events.count[m], NULL);
     out += BRC_N_MODES;
     read_peak(sim, out);
-    read_angles(sim, out + 2);
-    read_plane(sim, out + 4);
-    read_acoustic(sim, out + 6);
-    read_stresses(sim, out + 9);
-    read_fragments(sim, out + 13);
+    read_shape(sim, out + 2);
+    read_angles(sim, out + 5);
+    read_plane(sim, out + 7);
+    read_acoustic(sim, out + 9);
+    read_stresses(sim, out + 12);
+    read_fragments(sim, out + 16);
 }

@@ -294,6 +294,31 @@ static void work_at_the_peak_is_that_of_the_ledger(void **state)
     assert_true(energy < f->sim.ledger.damage * (1 + 1e-9));
 }
 
+/* Of a curve made by hand, as those of tests have what they have. */
+static void the_shape_of_a_curve_is_read(void **state)
+{
+    static const double force[] = {1, 4, 3.2, 6, 5.5, 10, 9, 4};
+    struct fixture *f = *state;
+    struct brc_rig *rig = &f->sim.rig;
+    const char *note;
+    fixture_grid(f, 3, 3, 6, 0.01, 0.7);
+    fixture_sim(f, brc_registry_find("vgcm"), weak, pull, "");
+    while (!brc_rigs_done(&f->sim))
+        fixture_steps(f, 1);
+    size_t n = sizeof force / sizeof force[0];
+    assert_true(rig->curve.table.n > n);
+    rig->curve.table.n = n;
+    for (size_t i = 0; i < n; i++) {
+        rig->curve.force[i] = force[i];
+        rig->curve.strain[i] = 0.001 * (double)(i + 1);
+    }
+    rig->force_peak = 10;
+    rig->strain_peak = 0.006;
+    CHECK_NEAR(reading(f, "drop_before_peak", &note), 0.08, 0, 1e-12);
+    CHECK_NEAR(reading(f, "strain_at_end", &note), 0.008, 0, 1e-12);
+    CHECK_NEAR(reading(f, "load_at_end", &note), 0.4, 0, 1e-12);
+}
+
 /* What cannot be read says why; without a break there are no cracks. */
 static void without_breaks_there_are_no_cracks(void **state)
 {
@@ -323,6 +348,7 @@ int main(void)
         FIXTURE_TEST(principal_stresses),
         FIXTURE_TEST(a_sieve_sorts_fragments),
         FIXTURE_TEST(work_at_the_peak_is_that_of_the_ledger),
+        FIXTURE_TEST(the_shape_of_a_curve_is_read),
         FIXTURE_TEST(without_breaks_there_are_no_cracks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
