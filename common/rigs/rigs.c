@@ -16,7 +16,7 @@ static const struct brc_param test_params[] = {BRC_PARAM_LIST(BRC_TEST_PARAMS)};
 const struct brc_param_list brc_test_param_list = BRC_PARAMS(test_params, struct brc_test_params);
 
 const struct brc_physics brc_rigs_physics[] = {
-    {"loading", 2, NULL}, {"measures", 1, NULL}, {NULL, 0, NULL}};
+    {"loading", 2, NULL}, {"measures", 2, NULL}, {NULL, 0, NULL}};
 
 #define BRC_RIG(symbol) extern const struct brc_rig_type symbol;
 BRC_RIGS
