@@ -221,7 +221,7 @@ static void q_is_in_proportion_to_p(void **state)
               "bonds: off; radius: 1 mm; kn: 1e8 N/m; kt: 1e8 N/m; mu: 0.3", stages,
               "target: 0.005; stop_drop: 0");
         run(f, 100000);
-        q[i] = result(f, "q_at_peak");
+        q[i] = fixture_result(f, "q_at_peak").value;
         print_message("p %g MPa: q / p %.3f, %lld steps\n", p, q[i] / (1e6 * p),
                       (long long)f->sim.step);
         CHECK_BETWEEN(f->sim.rig.strain_onset, 0, 0.003);
