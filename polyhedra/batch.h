@@ -55,7 +55,8 @@ enum { POLY_XI = 0, POLY_WEIGHT = 3, POLY_NORMAL = 4, POLY_SPRING = 8 };
 
 /* Motion of a contact since it was computed literally (struct poly_contacts, motion): displacement
  * of b relative to a at the centre of a, path, turn of b relative to a, path at which it is
- * computed anew (0: at each step), a quarter of the sum of both turns; what its bond stored then.
+ * computed anew or looks at its sleepers (0: at each step), a quarter of the sum of both turns;
+ * what its bond stored then.
  */
 enum {
     POLY_MOTION_PATH = 3,
@@ -145,6 +146,7 @@ struct poly_batch {
     struct poly_spring_law law;
     struct poly_lengths len;
     bool viscous, is_platens;
+    bool looks; /* linearised contacts look at their sleepers one by one */
     int32_t n_contacts, n_points, n_apart;
     int32_t n_ahead, ahead[POLY_CONTACTS]; /* contacts of the next batch */
     int32_t contact[POLY_CONTACTS], a[POLY_CONTACTS],

@@ -44,6 +44,15 @@ static double to_edge(const struct poly_core *c, int32_t edge, const double p[3]
     return brc_distance(x, p);
 }
 
+/* The part of a closed edge that is closest to p: the edge, or one of its ends. */
+static int32_t code_on_edge(const struct poly_core *c, int32_t edge, const double p[3])
+{
+    double along[3], t = poly_along_edge(c, edge, p, along);
+    if (t <= 0 || t >= 1)
+        return poly_feature_code(c->end[edge][t > 0], POLY_ON_VERTEX);
+    return poly_feature_code(edge, POLY_ON_EDGE);
+}
+
 /* Faces count only from above, and strictly inside their sides: what is on an edge is left to
  * the edge, so that no two features claim the same point with different normals. */
 void poly_closest_search(struct poly_closest *r, const struct poly_core *c, const double p[3])
@@ -162,8 +171,6 @@ void poly_closest_walk(struct poly_closest *r, const struct poly_core *c, const 
         poly_closest_search(r, c, p);
 }
 
-/* Whatever face was asked for is what r->feature names, though the closest point may be on its
- * edge: `closed` and `strict` know faces alone. */
 void poly_closest_on_face(struct poly_closest *r, const struct poly_core *c, int32_t index,
                           const double p[3])
 {
@@ -176,14 +183,20 @@ void poly_closest_on_face(struct poly_closest *r, const struct poly_core *c, int
         return;
     }
     double best = HUGE_VAL, nearest[3] = {0, 0, 0};
+    int32_t edge = 0;
     for (int32_t k = f->first; k < f->first + f->n_sides; k++) {
-        double x[3], d = to_edge(c, c->link[k].edge, p, x);
+        double x[3], d;
+        /* the closest point is on an edge that p is outside of */
+        if (brc_dot(c->side[k].m, p) < c->side[k].off)
+            continue;
+        d = to_edge(c, c->link[k].edge, p, x);
         if (d < best) {
             best = d;
+            edge = c->link[k].edge;
             brc_copy(nearest, x);
         }
     }
-    on_point(r, p, nearest, f->n, poly_feature_code(index, POLY_ON_FACE));
+    on_point(r, p, nearest, f->n, code_on_edge(c, edge, p));
 }
 
 /* A vertex that has gone through the core is below many faces. If each pushed it, the force would
@@ -193,7 +206,7 @@ bool poly_closest_of_rule(struct poly_closest *r, const struct poly_core *c, int
 {
     const struct poly_face *f = &c->face[face];
     double h = poly_height(f, p);
-    if (h >= contact_distance)
+    if (is_strict && h >= contact_distance)
         return false;
     if (h < 0 && find_inside(r, c, p))
         return r->feature == poly_feature_code(face, POLY_ON_FACE);
@@ -227,6 +240,36 @@ double poly_closest_margin(const struct poly_core *c, const struct poly_closest 
         for (int32_t k = c->star_first[index]; k < c->star_first[index + 1]; k++) {
             const int32_t *end = c->end[c->star[k]];
             brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
+            margin = poly_least(margin, -brc_dot(d, along) / brc_norm(along));
+        }
+    }
+    return margin;
+}
+
+/* As above, by what of a feature's region is seen of one face: beyond an edge is where the side of
+ * this face says so, the other face's does not count; of a vertex, two edges are the face's. The
+ * highest plane stands for the core, inside which another rule holds. */
+double poly_closest_margin_of_face(const struct poly_core *c, int32_t face,
+                                   const struct poly_closest *at, const double p[3])
+{
+    const struct poly_face *f = &c->face[face];
+    int32_t index = at->feature >> 2, kind = at->feature & 3;
+    double margin, d[3], along[3];
+    poly_highest(c, p, &margin);
+    if (kind == POLY_ON_FACE)
+        margin = poly_least(margin, poly_height(f, p));
+    for (int32_t k = f->first; k < f->first + f->n_sides; k++) {
+        int32_t edge = c->link[k].edge;
+        const int32_t *end = c->end[edge];
+        double beyond = brc_dot(c->side[k].m, p) - c->side[k].off;
+        if (kind == POLY_ON_FACE) {
+            margin = poly_least(margin, -beyond);
+        } else if (kind == POLY_ON_EDGE && edge == index) {
+            double t = poly_along_edge(c, edge, p, along), length = brc_norm(along);
+            margin = poly_least(margin, poly_least(beyond, poly_least(t, 1 - t) * length));
+        } else if (kind == POLY_ON_VERTEX && (end[0] == index || end[1] == index)) {
+            brc_sub(along, c->vertex[end[0] + end[1] - index], c->vertex[index]);
+            brc_sub(d, p, c->vertex[index]);
             margin = poly_least(margin, -brc_dot(d, along) / brc_norm(along));
         }
     }

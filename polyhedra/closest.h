@@ -105,7 +105,8 @@ void poly_closest_walk(struct poly_closest *r, const struct poly_core *c, const 
                        int32_t feature);
 /* The same of a point outside by trying every edge: where the walk does not settle. */
 void poly_closest_search(struct poly_closest *r, const struct poly_core *c, const double p[3]);
-/* Unsigned distance of p to a closed face, from outside or inside. */
+/* Unsigned distance of p to a closed face, from outside or inside; the feature may be one of its
+ * edges or vertices. */
 void poly_closest_on_face(struct poly_closest *r, const struct poly_core *c, int32_t index,
                           const double p[3]);
 /* Vertex p against a face by the rules `strict` (only above or below it) and `closed`. A vertex
@@ -116,6 +117,9 @@ bool poly_closest_of_rule(struct poly_closest *r, const struct poly_core *c, int
 /* How far p may move before its closest feature is another one, 0 or less inside the core. */
 double poly_closest_margin(const struct poly_core *c, const struct poly_closest *at,
                            const double p[3]);
+/* The same of its closest feature on a closed face, 0 or less also where p is below the face. */
+double poly_closest_margin_of_face(const struct poly_core *c, int32_t face,
+                                   const struct poly_closest *at, const double p[3]);
 /* Path of q before it can touch a face of the core. */
 double poly_path_to_face(const struct poly_core *c, int32_t face, const double q[3], bool is_strict,
                          double contact_distance);

@@ -49,17 +49,21 @@ static int32_t compare_point(const struct poly_feature *f, const struct poly_poi
     return di != 0 ? di : dj;
 }
 
-static void copy_point(const struct poly_points *points, size_t to, size_t from)
+/* n points, which move up or down. Column by column: point by point takes twice as many
+ * instructions. */
+static void move_points(const struct poly_points *points, size_t to, size_t from, size_t n)
 {
-    points->kind[to] = points->kind[from];
-    points->active[to] = points->active[from];
-    points->i[to] = points->i[from];
-    points->j[to] = points->j[from];
-    memcpy(points->near[to], points->near[from], sizeof points->near[from]);
-    memcpy(points->item[to], points->item[from], sizeof points->item[from]);
-    points->sleep[to] = points->sleep[from];
-    points->feature_valid_to[to] = points->feature_valid_to[from];
-    memcpy(points->spring[to], points->spring[from], sizeof points->spring[from]);
+#define MOVE(column) memmove(points->column + to, points->column + from, n * sizeof *points->column)
+    MOVE(kind);
+    MOVE(active);
+    MOVE(i);
+    MOVE(j);
+    MOVE(near);
+    MOVE(item);
+    MOVE(sleep);
+    MOVE(feature_valid_to);
+    MOVE(spring);
+#undef MOVE
 }
 
 /* Moves the state of points that act to the front, in order; returns how many. Their closest
@@ -72,16 +76,16 @@ static size_t gather_active(const struct poly_points *points, size_t first, size
         if (points->spring[p][POLY_WEIGHT] <= 0)
             continue;
         if (kept < p)
-            copy_point(points, kept, p);
+            move_points(points, kept, p, 1);
         points->feature_valid_to[kept++] = HUGE_VAL;
     }
     return kept - first;
 }
 
-/* Without a spring and without an item: a point that has been asleep was apart, so it has nothing
- * to remember. */
+/* A point without a spring, as all that are asleep or have just been listed. With its item, if it
+ * has one. */
 static void set_point(const struct poly_points *points, size_t p, const struct poly_feature *f,
-                      double sleep, double hold)
+                      const int32_t item[POLY_ITEM], double sleep, double hold)
 {
     points->kind[p] = f->kind;
     points->i[p] = f->i;
@@ -89,7 +93,7 @@ static void set_point(const struct poly_points *points, size_t p, const struct p
     memcpy(points->near[p], f->near, sizeof f->near);
     points->sleep[p] = sleep;
     points->feature_valid_to[p] = hold;
-    points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
+    memcpy(points->item[p], item, sizeof points->item[p]);
     points->active[p] = 0;
     memset(points->spring[p], 0, sizeof points->spring[p]);
 }
@@ -106,13 +110,35 @@ void poly_wake_points(struct brc_contacts *c, size_t contact, bool merged)
     for (; next < end && columns->skin_left[contact] <= points->sleep[next]; next++) {
         struct poly_feature f = poly_point(points, next);
         double hold = points->feature_valid_to[next];
+        int32_t item[POLY_ITEM];
         size_t p = next;
-        for (; p > first && compare_point(&f, points, p - 1, merged) < 0; p--)
-            copy_point(points, p, p - 1);
-        set_point(points, p, &f, columns->skin_left[contact], hold);
+        memcpy(item, points->item[p], sizeof item);
+        while (p > first && compare_point(&f, points, p - 1, merged) < 0)
+            p--;
+        if (p < next)
+            move_points(points, p + 1, p, next - p);
+        set_point(points, p, &f, item, columns->skin_left[contact], hold);
         columns->ready[contact] = 0;
     }
     columns->awake[contact] = (int32_t)(next - first);
+}
+
+/* Moves point p to its place among those that sleep, which are sorted by when they wake up; the
+ * others, of which those before `awake` are awake, close up. */
+static void move_to_sleep(const struct brc_contacts *c, size_t contact, size_t p, size_t awake,
+                          double sleep)
+{
+    const struct poly_points *points = c->point_columns;
+    struct poly_feature f = poly_point(points, p);
+    double hold = points->feature_valid_to[p];
+    int32_t item[POLY_ITEM];
+    size_t to = p, end = (size_t)c->p0[contact] + (size_t)c->np[contact];
+    memcpy(item, points->item[p], sizeof item);
+    while (to + 1 < end && (to + 1 < awake || points->sleep[to + 1] > sleep))
+        to++;
+    if (to > p)
+        move_points(points, p, p + 1, to - p);
+    set_point(points, to, &f, item, sleep, hold);
 }
 
 /* Those that sleep stand sorted, so that to see whether one wakes up is to look at the first. If
@@ -120,17 +146,23 @@ void poly_wake_points(struct brc_contacts *c, size_t contact, bool merged)
  * instead of 3.6, and nothing that has points apart is linearised. */
 void poly_sleep_point(struct brc_contacts *c, size_t contact, size_t p, double sleep)
 {
-    const struct poly_points *points = c->point_columns;
     struct poly_contacts *columns = c->model_columns;
-    struct poly_feature f = poly_point(points, p);
-    double hold = points->feature_valid_to[p];
-    size_t end = (size_t)c->p0[contact] + (size_t)c->np[contact];
     size_t awake = (size_t)c->p0[contact] + (size_t)columns->awake[contact]--;
-    /* the others that are awake close up; those that sleep are sorted by when they wake up */
-    for (; p + 1 < end && (p + 1 < awake || points->sleep[p + 1] > sleep); p++)
-        copy_point(points, p, p + 1);
-    set_point(points, p, &f, sleep, hold);
+    move_to_sleep(c, contact, p, awake, sleep);
     columns->ready[contact] = 0;
+}
+
+void poly_sleep_on(struct brc_contacts *c, size_t contact, double sleep)
+{
+    const struct poly_contacts *columns = c->model_columns;
+    const struct poly_points *points = c->point_columns;
+    size_t first = (size_t)c->p0[contact] + (size_t)columns->awake[contact];
+    size_t end = (size_t)c->p0[contact] + (size_t)c->np[contact];
+    /* Mostly it stays the first one. Then its other columns need not be fetched. */
+    if (first + 1 < end && points->sleep[first + 1] > sleep)
+        move_to_sleep(c, contact, first, first, sleep);
+    else
+        points->sleep[first] = sleep;
 }
 
 /* Pairs that may touch at once first, then by the path that they are free for. The order of what
@@ -152,6 +184,7 @@ static int compare_features(const void *x, const void *y)
 static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_t contact,
                           const struct poly_list *list, bool merged)
 {
+    static const int32_t none[POLY_ITEM] = {[POLY_ITEM_LIST] = POLY_NO_LIST};
     struct poly_contacts *columns = c->model_columns;
     double skin_left = columns->skin_left[contact];
     if (list->n > 1)
@@ -172,7 +205,7 @@ static int replace_points(struct brc_context *ctx, struct brc_contacts *c, size_
             memcpy(points->near[p], list->feature[k].near, sizeof points->near[p]);
             points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
         } else if (next < first + n)
-            set_point(points, next++, &list->feature[k], skin_left - list->feature[k].free,
+            set_point(points, next++, &list->feature[k], none, skin_left - list->feature[k].free,
                       HUGE_VAL);
     }
     c->np[contact] = (int32_t)(next - first);

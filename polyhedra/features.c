@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One feature pair at a time. It walks over the features of a core, so the loop comes here only
- * for a vertex whose closest feature is not sure, and for the vertices of `closed`. It computes
- * nothing that the laws do not: it finds the feature, and hands the distance on. */
+ * for a vertex whose closest feature is not sure. It computes nothing that the laws do not: it
+ * finds the feature, and hands the distance on. */
 #include "polyhedra/features.h"
 
 #include "polyhedra/listing_kernels.inc.h"
@@ -35,18 +35,35 @@ static void fade_vertex(struct poly_geometry4 *t, const struct poly_pair *p, boo
     poly_weigh_vertex(t, v, sign, &f);
 }
 
+/* The vertex of a feature pair in the frame of the other core, which is returned. */
+static const struct poly_core *vertex_in_body(double q[3], const struct poly_pair *p,
+                                              const struct poly_feature *f)
+{
+    bool of_b = f->kind == POLY_VERTEX_B;
+    poly_to_body(q, of_b ? p->ra : p->rb, of_b ? p->xa : p->xb, of_b ? p->vb[f->j] : p->va[f->i]);
+    return of_b ? &p->a : &p->b;
+}
+
+int32_t poly_feature_of_face(const struct poly_pair *p, struct poly_feature *f)
+{
+    double q[3];
+    const struct poly_core *c = vertex_in_body(q, p, f);
+    struct poly_closest at;
+    poly_closest_on_face(&at, c, *poly_remembered(f), q);
+    return at.feature;
+}
+
 /* Vertex of one body against a face of the other, or its core (`merged`). */
 static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, struct poly_feature *f,
                          double *margin, enum poly_rule rule)
 {
     bool of_b = f->kind == POLY_VERTEX_B;
-    const struct poly_core *c = of_b ? &p->a : &p->b;
     const double(*rm)[3] = of_b ? p->ra : p->rb;
     const double *v = of_b ? p->vb[f->j] : p->va[f->i];
     double q[3], out[3];
+    const struct poly_core *c = vertex_in_body(q, p, f);
     int32_t *feature = poly_remembered(f);
     struct poly_closest at;
-    poly_to_body(q, rm, of_b ? p->xa : p->xb, v);
     *margin = 0;
     if (rule == POLY_MERGED) {
         poly_closest_walk(&at, c, q, *feature);
@@ -56,7 +73,9 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
                                      p->contact_distance)) {
         t->delta = -poly_path_to_face(c, *feature, q, rule == POLY_STRICT, p->contact_distance);
         return false;
-    } else if (rule == POLY_STRICT && poly_height(&c->face[*feature], q) > 0) {
+    } else if (rule == POLY_CLOSED) {
+        *margin = poly_closest_margin_of_face(c, *feature, &at, q);
+    } else if (poly_height(&c->face[*feature], q) > 0) {
         *margin = poly_closest_margin(c, &at, q);
     }
     struct poly_geometry4 all;
@@ -77,8 +96,30 @@ static bool touch_vertex(struct poly_geometry *t, const struct poly_pair *p, str
 
 /* --- edges ------------------------------------------------------------------------------------ */
 
-/* In space and from the ends of both edges, as the loop has it: the body frame of either core would
- * prefer one of the two. */
+/* In space, as the loop has it: the body frame of either core would prefer one of the two. */
+static void ends_of_edges(brc_lanes ends[4][3], const struct poly_pair *p,
+                          const struct poly_feature *f)
+{
+    for (int k = 0; k < 2; k++) {
+        poly_all3(ends[k], p->va[p->a.end[f->i][k]]);
+        poly_all3(ends[2 + k], p->vb[p->b.end[f->j][k]]);
+    }
+}
+
+double poly_closed_gap(const struct poly_pair *p, struct poly_feature *f)
+{
+    struct poly_crossings x;
+    brc_lanes ends[4][3];
+    double q[3];
+    if (f->kind != POLY_EDGES) {
+        const struct poly_core *c = vertex_in_body(q, p, f);
+        return poly_path_to_face(c, *poly_remembered(f), q, false, p->contact_distance);
+    }
+    ends_of_edges(ends, p, f);
+    poly_cross_edges(&x, ends);
+    return poly_edge_gap(&x, p->contact_distance)[0];
+}
+
 static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
                         const struct poly_feature *f, uint8_t *active, enum poly_rule rule)
 {
@@ -86,10 +127,7 @@ static bool touch_edges(struct poly_geometry *t, const struct poly_pair *p,
     const struct poly_lengths len = {p->contact_distance, p->fade, p->reach};
     struct poly_geometry4 all;
     brc_lanes ends[4][3], side = brc_lanes_all(*active == 1 ? 1 : *active == 2 ? -1 : 0);
-    for (int k = 0; k < 2; k++) {
-        poly_all3(ends[k], p->va[p->a.end[f->i][k]]);
-        poly_all3(ends[2 + k], p->vb[p->b.end[f->j][k]]);
-    }
+    ends_of_edges(ends, p, f);
     brc_mask touches = poly_edge_geometry(&all, &len, ends, &side, brc_lanes_all(p->reach), rule);
     /* 3: edges of `closed` that touch without crossing have no side to remember. */
     *active = !touches[0] ? 0 : side[0] < 0 ? 2 : side[0] > 0 ? 1 : 3;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The literal evaluation: one feature pair at a time, from the poses alone. It decides closest
- * features that are not sure, does all of `closed`, and gives energy and springs. The laws are
- * those of geometry.h, with the one pair in all lanes. */
+ * features that are not sure, and gives energy and springs. The laws are those of geometry.h, with
+ * the one pair in all lanes. */
 #ifndef POLY_FEATURES_H
 #define POLY_FEATURES_H
 
@@ -20,5 +20,9 @@ int poly_list_features(struct brc_context *ctx, struct poly_list *l, const struc
  * where the walk begins, not what it finds. */
 bool poly_find_contact(struct poly_geometry *t, const struct poly_pair *p, struct poly_feature *f,
                        uint8_t *active, double *margin, enum poly_rule rule);
+/* `closed`: relative path before the pair can touch, less than 0 where it touches. */
+double poly_closed_gap(const struct poly_pair *p, struct poly_feature *f);
+/* `closed`: what of the face (itself, an edge, a vertex) is closest to the vertex, as a code. */
+int32_t poly_feature_of_face(const struct poly_pair *p, struct poly_feature *f);
 
 #endif

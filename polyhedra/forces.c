@@ -232,6 +232,7 @@ static void open_batch(struct poly_batch *batch, struct brc_sim *sim, struct pol
     batch->pair_of_contact = -1;
     batch->n_points = 0;
     batch->viscous = poly_is_viscous(sim);
+    batch->looks = p->features == POLY_CLOSED && poly_is_linearised(sim);
     memset(batch->is_stable, 0, sizeof batch->is_stable);
     memset(batch->n_tasks, 0, sizeof batch->n_tasks);
 }

@@ -11,6 +11,9 @@
 /* Weight of crossing edges: full from this squared sine on (5.7 degrees). Below it the ends of the
  * parallel part carry the load, which are vertices (README.md). */
 #define POLY_SKEW 0.01
+/* How far the closest points of crossing edges of `closed` may move along them, in radii R, while
+ * their springs are linear. */
+#define POLY_PLACE 0.1
 /* Edges count as parallel when the squared sine of their angle is below this. Relative, so that
  * results scale with the sample. */
 #define POLY_PARALLEL 1e-12
@@ -266,15 +269,16 @@ BRC_LANES_INLINE brc_lanes poly_path_to_inside(const struct poly_crossings *x, b
     return brc_lanes_max(path, poly_path_to_end(x, x->lb, 1, -x->rb, -x->ra, x->la, reach, skin));
 }
 
-/* Relative path for which both closest points surely stay inside their edges. By a shift of s one
- * moves by s / sin, by a turn of s / reach by the distance over sin^2 times that; twice as much
- * while the sine changes by a quarter at most. */
+/* Relative path for which both closest points surely stay inside their edges, and move by less than
+ * `most`. By a shift of s one moves by s / sin, by a turn of s / reach by the distance over sin^2
+ * times that; twice as much while the sine changes by a quarter at most. */
 BRC_LANES_INLINE brc_lanes poly_path_inside(const struct poly_crossings *x, brc_lanes reach,
-                                            brc_lanes d)
+                                            brc_lanes d, double most)
 {
     brc_lanes sine = brc_lanes_sqrt(x->sin2);
     brc_lanes far =
         brc_lanes_min(brc_lanes_min(x->ta, x->la - x->ta), brc_lanes_min(x->tb, x->lb - x->tb));
+    far = brc_lanes_min(far, brc_lanes_all(most));
     brc_lanes path = 0.5 * far * reach * x->sin2 / (sine * reach + brc_lanes_abs(d));
     return brc_lanes_min(path, 0.25 * sine * reach);
 }
@@ -326,8 +330,10 @@ BRC_LANES_INLINE brc_mask poly_crossing_geometry(struct poly_geometry4 *t,
     d *= *side;
     brc_mask touches = inside & poly_overlap(t, d, x->m, root_m * *side, len->contact_distance) &
                        brc_lanes_less(brc_lanes_all(-len->contact_distance), d);
-    t->valid_path =
-        rule == POLY_MERGED ? t->delta : brc_lanes_min(t->delta, poly_path_inside(x, reach, d));
+    const double most = rule == POLY_CLOSED ? POLY_PLACE * len->fade : HUGE_VAL;
+    t->valid_path = t->delta;
+    if (rule != POLY_MERGED)
+        t->valid_path = brc_lanes_min(t->delta, poly_path_inside(x, reach, d, most));
     for (int k = 0; k < 3; k++)
         t->x[k] = p0[k] + x->ta * x->a[k] + 0.5 * d * t->n[k];
     poly_full_weight(t);
@@ -336,12 +342,24 @@ BRC_LANES_INLINE brc_mask poly_crossing_geometry(struct poly_geometry4 *t,
     return touches & poly_positive(t->weight);
 }
 
+/* Relative path for which the closest points of closed edges, which are not both inside, move
+ * hardly farther than the bodies do. The distance is a convex function, so they do as long as one
+ * of them is at an end; inside edges that are almost parallel they run from end to end on a path of
+ * next to nothing. None for those that count as parallel, or may come to. */
+BRC_LANES_INLINE brc_lanes poly_path_beyond(const struct poly_crossings *x, brc_lanes reach,
+                                            double skin)
+{
+    brc_mask skew = brc_lanes_less(brc_lanes_all(4 * POLY_PARALLEL), x->sin2);
+    brc_lanes path = poly_path_to_inside(x, reach, skin);
+    return brc_lanes_where(skew, brc_lanes_min(path, 0.5 * brc_lanes_sqrt(x->sin2) * reach));
+}
+
 /* Edges of `closed`, wherever their closest points are; parallel ones touch in the middle of the
  * part where they face each other. */
 BRC_LANES_INLINE brc_mask poly_closed_geometry(struct poly_geometry4 *t,
                                                const struct poly_lengths *len,
                                                const struct poly_crossings *x,
-                                               const brc_lanes p0[3])
+                                               const brc_lanes p0[3], brc_lanes reach)
 {
     brc_lanes s, u, r[3], low = x->ra, high = x->ra + x->c * x->lb;
     poly_closest_on_edges(&s, &u, x);
@@ -351,7 +369,8 @@ BRC_LANES_INLINE brc_mask poly_closed_geometry(struct poly_geometry4 *t,
     u = brc_lanes_pick(x->skew, u, poly_clamp(x->c * (middle - low), x->lb));
     brc_lanes d = poly_edge_distance(r, x, s, u);
     brc_mask touches = poly_overlap(t, d, r, 1 / d, len->contact_distance) & poly_positive(d);
-    t->valid_path = t->delta;
+    t->valid_path =
+        brc_lanes_min(brc_lanes_min(t->delta, d), poly_path_beyond(x, reach, len->skin));
     for (int k = 0; k < 3; k++)
         t->x[k] = p0[k] + s * x->a[k] + 0.5 * r[k];
     poly_full_weight(t);
@@ -363,6 +382,7 @@ BRC_LANES_INLINE void poly_pick_geometry(struct poly_geometry4 *t, brc_mask m,
 {
     t->delta = brc_lanes_pick(m, t->delta, other->delta);
     t->weight = brc_lanes_pick(m, t->weight, other->weight);
+    t->valid_path = brc_lanes_pick(m, t->valid_path, other->valid_path);
     for (int k = 0; k < 3; k++) {
         t->n[k] = brc_lanes_pick(m, t->n[k], other->n[k]);
         t->x[k] = brc_lanes_pick(m, t->x[k], other->x[k]);
@@ -384,7 +404,7 @@ BRC_LANES_INLINE brc_mask poly_edge_geometry(struct poly_geometry4 *t,
     /* Both for all lanes, as edges that cross inside and edges that do not may share a four. */
     if (rule == POLY_CLOSED) {
         struct poly_geometry4 closed;
-        brc_mask touches_closed = poly_closed_geometry(&closed, len, &x, p[0]);
+        brc_mask touches_closed = poly_closed_geometry(&closed, len, &x, p[0], reach);
         poly_pick_geometry(t, touches, &closed);
         *side = brc_lanes_where(touches, *side);
         touches |= touches_closed;

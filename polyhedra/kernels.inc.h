@@ -94,16 +94,15 @@ BRC_LANES_INLINE void poly_finish_kernel(struct poly_batch *batch, const int fla
 
 /* One function for each set of flags (enum poly_flags) that is met. With options as variables the
  * loop over points takes branches for each four, and the compiler keeps what no option needs.
- * `closed` has no tangents, since its springs change all the time; tangents go without viscosity;
- * and without friction springs have no work to book. */
+ * Tangents go without viscosity, and without friction springs have no work to book. */
 #define MOTIONS(X)    X(motion, 0) X(motion, 8) X(motion, 16) X(motion, 24) X(motion, 32)
 #define LINEARISED(X) X(linearised, 0) X(linearised, 1)
 #define PLATENS(X)    X(platens, 0) X(platens, 1) X(platens, 2) X(platens, 3)
 
 #define FINISHES(X) X(finish, 0) X(finish, 1) X(finish, 2) X(finish, 3) X(finish, 8) X(finish, 9)
 
-#define LITERAL(X, rule)  X(rule, 0) X(rule, 2) X(rule, 4) X(rule, 5) X(rule, 6) X(rule, 7)
-#define TANGENTS(X, rule) LITERAL(X, rule) X(rule, 8) X(rule, 12) X(rule, 13)
+#define LITERAL(X, rule) X(rule, 0) X(rule, 2) X(rule, 4) X(rule, 5) X(rule, 6) X(rule, 7)
+#define POINTS(X, rule)  LITERAL(X, rule) X(rule, 8) X(rule, 12) X(rule, 13)
 
 #define KERNEL(name, flags)                                                       \
     __attribute__((flatten)) static void name##_##flags(struct poly_batch *batch) \
@@ -115,18 +114,18 @@ MOTIONS(KERNEL)
 FINISHES(KERNEL)
 PLATENS(KERNEL)
 LINEARISED(KERNEL)
-LITERAL(KERNEL, closed)
-TANGENTS(KERNEL, strict)
-TANGENTS(KERNEL, merged)
+POINTS(KERNEL, closed)
+POINTS(KERNEL, strict)
+POINTS(KERNEL, merged)
 
 /* Platens have the literal loop in either case. */
 static struct poly_kernels poly_choose_kernels(const struct brc_sim *sim)
 {
     static poly_kernel *const motion[] = {MOTIONS(ENTRY)}, *const finish[] = {FINISHES(ENTRY)};
     static poly_kernel *const platens[] = {PLATENS(ENTRY)}, *const moves[] = {LINEARISED(ENTRY)};
-    static poly_kernel *const closed[] = {LITERAL(ENTRY, closed)};
-    static poly_kernel *const strict[] = {TANGENTS(ENTRY, strict)};
-    static poly_kernel *const merged[] = {TANGENTS(ENTRY, merged)};
+    static poly_kernel *const closed[] = {POINTS(ENTRY, closed)};
+    static poly_kernel *const strict[] = {POINTS(ENTRY, strict)};
+    static poly_kernel *const merged[] = {POINTS(ENTRY, merged)};
     static poly_kernel *const *const points[] = {closed, strict, merged};
     const struct poly_params *p = poly_params_of(sim);
     int ledger = BRC_OPTION(sim->run.ledger) ? POLY_LEDGER : 0;

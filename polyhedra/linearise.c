@@ -52,8 +52,10 @@ static void add_bond(const struct poly_contact4 *g, int lane, double force[6], d
 /* Relative path for which no point that sleeps can touch, `most` at most. That is also one for
  * which no vertex of `strict` leaves its face, since one of its edges comes or goes across the
  * face's then. They stand sorted by when they wake up, so the first that counts ends the search.
- * Edges that fade are left out: they come and go with a weight that begins at 0 (README.md). */
-static double path_of_sleepers(const struct brc_contacts *c, size_t contact, double most)
+ * Edges that fade, where some do, are left out: they come and go with a weight that begins at 0
+ * (README.md). */
+static double path_of_sleepers(const struct brc_contacts *c, size_t contact, double most,
+                               bool fades)
 {
     const struct poly_contacts *columns = c->model_columns;
     const struct poly_points *points = c->point_columns;
@@ -61,10 +63,42 @@ static double path_of_sleepers(const struct brc_contacts *c, size_t contact, dou
     size_t end = (size_t)c->p0[contact] + (size_t)c->np[contact];
     double skin_left = columns->skin_left[contact];
     most = poly_least(most, skin_left);
+    if (!fades)
+        return p < end ? poly_least(most, skin_left - points->sleep[p]) : most;
     for (; p < end && skin_left - points->sleep[p] < most; p++)
         if (points->kind[p] != POLY_EDGES || points->feature_valid_to[p] != POLY_FADES)
             return skin_left - points->sleep[p];
     return most;
+}
+
+/* `closed` lists three times as many feature pairs of a contact as `merged`, and of faces that were
+ * one most begin at a distance of just 2 R: some pair is always about to touch, by its bound,
+ * though hardly any does. To compute the contact anew for each takes 12.5e6 instead of 9.7e6
+ * instructions a step of the block of bench_polyhedra, and points that hover would keep it literal.
+ */
+bool poly_look_at_sleepers(struct poly_batch *batch, size_t contact, double path)
+{
+    struct brc_contacts *c = batch->contacts;
+    const struct poly_contacts *columns = c->model_columns;
+    const struct poly_points *points = c->point_columns;
+    double *end = &columns->motion[contact][POLY_MOTION_END];
+    double skin_left = columns->skin_left[contact] - path,
+           most = *poly_tangent_end(columns, contact);
+    size_t first = (size_t)c->p0[contact] + (size_t)columns->awake[contact];
+    size_t last = (size_t)c->p0[contact] + (size_t)c->np[contact];
+    struct poly_pair pair;
+    if (path >= most)
+        return false;
+    poly_pair_of(&pair, batch->sim, batch->st, c->a[contact], c->b[contact]);
+    while (first < last && points->sleep[first] >= skin_left) {
+        struct poly_feature f = poly_point(points, first);
+        double sleep = skin_left - poly_closed_gap(&pair, &f);
+        if (sleep >= skin_left)
+            return false;
+        poly_sleep_on(c, contact, sleep);
+    }
+    *end = first < last ? poly_least(most, path + (skin_left - points->sleep[first])) : most;
+    return path < *end;
 }
 
 /* Relative path of a contact before its bond can break, or begin or end to pull: openings change by
@@ -83,19 +117,22 @@ static double path_of_bond(const struct poly_batch *batch, int32_t i)
     return p->breakable ? poly_least(path, (1 - g->broken[i % BRC_LANES]) / slope) : path;
 }
 
-/* Relative path for which a contact may be linearised, as far as its acting springs do not matter.
- * All of it from saved fields of the contact and its bodies, so that a restart decides alike. */
+/* Relative path for which a contact may be linearised, as far as its acting springs do not matter;
+ * without regard to sleepers where they are looked at one by one. All of it from saved fields of
+ * the contact and its bodies, so that a restart decides alike. */
 static double path_left(const struct poly_batch *batch, int32_t i)
 {
     const struct poly_params *p = poly_params_of(batch->sim);
     const struct brc_contacts *c = batch->contacts;
+    const struct poly_contacts *columns = c->model_columns;
     size_t contact = (size_t)batch->contact[i];
     /* The limit by accuracy first; what may begin to touch, or break, only shortens it. */
     double most = p->condensed_path * p->radius;
     if (c->status[contact] == BRC_INTACT)
         most = poly_least(most, path_of_bond(batch, i));
     if (batch->listed[i])
-        return path_of_sleepers(c, contact, most);
+        return batch->looks ? poly_least(most, columns->skin_left[contact])
+                            : path_of_sleepers(c, contact, most, true);
     return poly_least(batch->four[i / BRC_LANES].gap[i % BRC_LANES], most);
 }
 
@@ -133,12 +170,17 @@ void poly_linearise(struct poly_batch *batch, int32_t i)
     motion[POLY_MOTION_STORED] = stored;
     /* A point that is awake and apart may touch within a few steps. Rather than to look for its
      * bound here, the contact waits until it sleeps: then it has one. */
-    if (!batch->will_linearise[i] || batch->has_apart[i])
+    if (!batch->will_linearise[i] || (batch->has_apart[i] && !batch->looks))
         return;
     double end = poly_least(batch->valid_path[i], path_left(batch, i));
     if (!is_long(batch, i, end))
         return;
     motion[POLY_MOTION_END] = end;
+    if (batch->looks) {
+        *poly_tangent_end(columns, contact) = end;
+        if (batch->listed[i])
+            motion[POLY_MOTION_END] = path_of_sleepers(batch->contacts, contact, end, false);
+    }
     columns->is_linearised[contact] = 1;
     for (int k = 0; k < 6; k++)
         columns->linearised_force[contact][k] =

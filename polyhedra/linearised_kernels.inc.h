@@ -68,6 +68,23 @@ BRC_LANES_INLINE brc_mask poly_turns_far(const struct poly_batch *batch,
     return brc_lanes_less(brc_lanes_all(most * most), brc_lanes_dot(s->both, s->both));
 }
 
+/* Where contacts have come to their ends and may go on (poly_look_at_sleepers), they stay. Lanes
+ * from n on have the first contact once more. */
+BRC_LANES_INLINE void poly_look_on(struct poly_batch *batch, brc_mask *stays,
+                                   struct poly_motion4 *s, const struct poly_index4 *i, int n)
+{
+    const struct poly_contacts *columns = batch->contacts->model_columns;
+    for (int k = 0; k < BRC_LANES; k++) {
+        size_t contact = (size_t)i->contact[k];
+        if ((*stays)[k])
+            continue;
+        if (k < n ? poly_look_at_sleepers(batch, contact, s->path[k]) : (*stays)[0] != 0) {
+            (*stays)[k] = -1;
+            s->end[k] = columns->motion[contact][POLY_MOTION_END];
+        }
+    }
+}
+
 /* Moves four contacts by a step. Returns how many of them are left to do: where some have used up
  * their path, none is moved, and the others come first in i. None is moved, as a store to some
  * lanes alone would cost all of them; those that stay are taken again with the next ones, so that
@@ -89,7 +106,10 @@ BRC_LANES_INLINE int poly_move_linearised(struct poly_batch *batch, struct poly_
     poly_motion_of_four(batch, &g, &f, i, false);
     poly_gather_rows((brc_lanes *)&s, columns->motion[0], POLY_MOTION, i->contact, POLY_MOTION);
     poly_motion_add_step(&s, &f, &g, batch->sim->dt);
-    brc_mask stays = brc_lanes_less(s.path, s.end) & ~poly_turns_far(batch, &s);
+    brc_mask stays = brc_lanes_less(s.path, s.end), far = poly_turns_far(batch, &s);
+    if (batch->looks && brc_lanes_any(~stays))
+        poly_look_on(batch, &stays, &s, i, n);
+    stays &= ~far;
     if (brc_lanes_any(~stays)) {
         int left = 0;
         for (int k = 0; k < n; k++) {

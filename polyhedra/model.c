@@ -51,11 +51,6 @@ static int check(struct brc_context *ctx, const void *params, const struct brc_s
                  "polyhedra.radius = %g m is not below half of the mean grain size (%g m): nothing "
                  "would be left of the grains; a tenth of the grain size is usual",
                  p->radius, scale.size);
-    if (p->evaluation == POLY_LINEARISED && p->features == POLY_CLOSED)
-        BRC_FAIL(
-            ctx, BRC_ERR_INPUT,
-            "polyhedra.evaluation = condensed is not for polyhedra.features = closed, whose set of "
-            "springs changes all the time; auto and literal are for all");
     if (p->strain_length == POLY_LENGTH_CENTRES)
         warn_oblique(ctx, &specimen->facets);
     return 0;
@@ -164,7 +159,7 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
  * needs no new list, since collision acts between bonded grains, too. */
 /* Move a number when what it stands for computes otherwise; tests/cli/test_physics.sh watches. */
 static const struct brc_physics physics[] = {{"polyhedra", 1, NULL},
-                                             {"features closed", 1, "features=closed"},
+                                             {"features closed", 2, "features=closed"},
                                              {"features strict", 1, "features=strict"},
                                              {"features merged", 1, "features=merged"},
                                              {"condensed", 1, "evaluation=auto|condensed"},

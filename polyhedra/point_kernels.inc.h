@@ -83,7 +83,8 @@ BRC_LANES_INLINE void poly_fade_vertices(struct poly_geometry4 *t, const struct 
 /* As many turns of fading as the vertex with most near vertices needs. */
 BRC_LANES_INLINE void poly_vertices_of_tasks(struct poly_geometry4 *t,
                                              const struct poly_batch *batch,
-                                             const struct poly_task *task, const bool flat)
+                                             const struct poly_task *task, const bool flat,
+                                             const enum poly_rule rule)
 {
     const struct poly_points *points = batch->contacts->point_columns;
     const int32_t *item[BRC_LANES];
@@ -103,13 +104,17 @@ BRC_LANES_INLINE void poly_vertices_of_tasks(struct poly_geometry4 *t,
     else
         poly_distance_to_edges(&s, out, batch, v, item);
     brc_mask touches = poly_vertex_geometry(t, v, s, out, sign, batch->len.contact_distance);
+    /* Which faces count is another question inside the core. The nearest of them is as far. */
+    if (rule == POLY_CLOSED)
+        t->valid_path = brc_lanes_min(t->valid_path, s);
     if (n_near > 0)
         poly_fade_vertices(t, batch, v, sign, item, n_near);
     poly_hide_apart(t, touches);
 }
 
 /* The side on which edges have met is remembered with the point: without it, edges that have gone
- * through each other would pull. */
+ * through each other would pull. Under `closed` it is forgotten when they touch without crossing:
+ * they may turn past parallel then, with which the sign of a side changes. */
 BRC_LANES_INLINE void poly_edges_of_tasks(struct poly_geometry4 *t, const struct poly_batch *batch,
                                           const struct poly_task *task, const enum poly_rule rule)
 {
@@ -127,7 +132,7 @@ BRC_LANES_INLINE void poly_edges_of_tasks(struct poly_geometry4 *t, const struct
         brc_lanes_gather3(p[j], batch->st->global_vertices, end[j]);
     poly_edge_geometry(t, &batch->len, p, &side, reach, rule);
     for (int32_t k = 0; k < BRC_LANES; k++) {
-        if (item[k][POLY_ITEM_SIDE] != 0)
+        if (rule != POLY_CLOSED && item[k][POLY_ITEM_SIDE] != 0)
             continue;
         item[k][POLY_ITEM_SIDE] = side[k] < 0 ? -1 : side[k] > 0;
         points->active[task[k].point] = side[k] < 0 ? 2 : side[k] > 0 ? 1 : 3;
@@ -308,7 +313,7 @@ BRC_LANES_INLINE void poly_points_of_list(struct poly_batch *batch, const int li
         else if (list == POLY_CROSSING)
             poly_edges_of_tasks(&t, batch, task + k, rule);
         else
-            poly_vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT);
+            poly_vertices_of_tasks(&t, batch, task + k, list == POLY_FLAT, rule);
         poly_act_on_points(batch, task + k, n - k, &t, flags);
     }
 }
@@ -317,7 +322,7 @@ BRC_LANES_INLINE void poly_points_kernel(struct poly_batch *batch, const enum po
                                          const int flags)
 {
     poly_points_of_list(batch, POLY_FLAT, rule, flags);
-    if (rule == POLY_MERGED)
+    if (rule != POLY_STRICT)
         poly_points_of_list(batch, POLY_SHARP, rule, flags);
     poly_points_of_list(batch, POLY_CROSSING, rule, flags);
     poly_points_of_list(batch, POLY_KNOWN, rule, flags);

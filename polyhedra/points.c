@@ -5,10 +5,9 @@
  * of lists. */
 #include "polyhedra/motion_kernels.inc.h"
 
-#include <stdlib.h>
-
 /* A point that has come apart stays awake while its gap is less than this many steps' path: to
- * look at it again costs as much as it does for that long. */
+ * look at it again costs as much as it does for that long. Unless its contact may be linearised and
+ * looks at those that sleep (linearise.c). */
 static const double DOZE_STEPS = 4;
 
 /* Row i of the batch as the literal functions want it. */
@@ -40,6 +39,8 @@ static void add_known(struct poly_batch *batch, int32_t i, size_t p, bool touche
     struct poly_geometry4 *to = &batch->known[k / BRC_LANES];
     int lane = k % BRC_LANES;
     to->delta[lane] = to->valid_path[lane] = t->delta;
+    if (rule_of(batch) == POLY_CLOSED) /* as in poly_vertices_of_tasks */
+        to->valid_path[lane] = poly_least(t->delta, batch->len.contact_distance - t->delta);
     to->weight[lane] = touches ? t->weight : 0;
     to->fades[lane] = 0;
     for (int m = 0; m < 3; m++) {
@@ -52,8 +53,7 @@ static void add_known(struct poly_batch *batch, int32_t i, size_t p, bool touche
 }
 
 /* A point by the literal functions. True when it is a vertex whose closest feature is sure now:
- * then it belongs in the list of that feature. The margin of `closed` is 0 always: which faces
- * count changes too easily to be remembered. */
+ * then it belongs in the list of that feature. */
 static bool find_literally(struct poly_batch *batch, int32_t i, size_t p)
 {
     const struct poly_contacts *columns = batch->contacts->model_columns;
@@ -112,16 +112,15 @@ static int32_t set_near(int32_t *item, const int32_t near[POLY_NEAR], int32_t fi
 /* What the touch of a vertex at a sure feature is computed from, as item. An edge by its two ends,
  * a vertex by itself twice: one kernel does both, and for a vertex the direction along the edge is
  * 0. */
-static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool merged)
+static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, int32_t code)
 {
     const struct poly_shapes *s = &batch->st->shapes;
     const struct poly_points *points = batch->contacts->point_columns;
     bool of_b = points->kind[p] == POLY_VERTEX_B;
     int32_t own = of_b ? batch->b[i] : batch->a[i], other = of_b ? batch->a[i] : batch->b[i];
-    int32_t vertex = of_b ? points->j[p] : points->i[p];
-    int32_t feature = of_b ? points->i[p] : points->j[p], index = merged ? feature >> 2 : feature;
+    int32_t vertex = of_b ? points->j[p] : points->i[p], index = code >> 2;
     int32_t first = (int32_t)s->first[other].vertex, *item = points->item[p];
-    bool flat = !merged || (feature & 3) == POLY_ON_FACE;
+    bool flat = (code & 3) == POLY_ON_FACE;
     item[POLY_ITEM_VERTEX] = (int32_t)s->first[own].vertex + vertex;
     item[POLY_ITEM_LIST] = (flat ? POLY_FLAT : POLY_SHARP) + (of_b ? 0 : POLY_OF_A) +
                            set_near(item + POLY_ITEM_NEAR, points->near[p], first,
@@ -131,9 +130,24 @@ static void set_vertex(const struct poly_batch *batch, int32_t i, size_t p, bool
         return;
     }
     const int32_t *end = s->end[s->first[other].edge + (size_t)index];
-    bool on_edge = (feature & 3) == POLY_ON_EDGE;
+    bool on_edge = (code & 3) == POLY_ON_EDGE;
     for (int k = 0; k < 2; k++)
         item[POLY_ITEM_FEATURE + k] = first + (on_edge ? end[k] : index);
+}
+
+/* The closest feature of a vertex, where it is sure, as a code. Points of `merged` remember it; for
+ * `closed` they remember the face, and what of it is closest is found again whenever the item is
+ * set, in the pose of then: while it is sure it is the same in every pose, so a restart finds what
+ * went before. */
+static int32_t feature_of(struct poly_batch *batch, int32_t i, size_t p)
+{
+    const struct poly_points *points = batch->contacts->point_columns;
+    struct poly_feature f = poly_point(points, p);
+    enum poly_rule rule = rule_of(batch);
+    if (rule == POLY_CLOSED)
+        return poly_feature_of_face(pair_of(batch, i), &f);
+    int32_t feature = *poly_remembered(&f);
+    return rule == POLY_MERGED ? feature : poly_feature_code(feature, POLY_ON_FACE);
 }
 
 /* n points that have their items, into their lists. */
@@ -149,7 +163,6 @@ static void list_items(struct poly_batch *batch, const struct poly_points *point
 static double list_point(struct poly_batch *batch, int32_t i, size_t p, double skin_left)
 {
     const struct poly_points *points = batch->contacts->point_columns;
-    enum poly_rule rule = rule_of(batch);
     bool is_set = points->item[p][POLY_ITEM_LIST] != POLY_NO_LIST;
     if (points->kind[p] == POLY_EDGES) {
         if (!is_set)
@@ -157,16 +170,12 @@ static double list_point(struct poly_batch *batch, int32_t i, size_t p, double s
         list_items(batch, points, i, p, 1);
         return 0;
     }
-    if (rule == POLY_CLOSED) {
-        find_literally(batch, i, p);
-        return HUGE_VAL;
-    }
     if (skin_left > points->feature_valid_to[p]) {
         if (!is_set)
-            set_vertex(batch, i, p, rule == POLY_MERGED);
+            set_vertex(batch, i, p, feature_of(batch, i, p));
         list_items(batch, points, i, p, 1);
     } else if (find_literally(batch, i, p)) {
-        set_vertex(batch, i, p, rule == POLY_MERGED);
+        set_vertex(batch, i, p, feature_of(batch, i, p));
         list_items(batch, points, i, p, 1);
     } else {
         points->item[p][POLY_ITEM_LIST] = POLY_NO_LIST;
@@ -220,16 +229,23 @@ static void come_apart(struct poly_batch *batch, const struct poly_apart *apart)
         points->item[p][POLY_ITEM_SIDE] = 0;
         points->feature_valid_to[p] = apart->fades ? POLY_FADES : HUGE_VAL;
     }
-    if (apart->path < DOZE_STEPS * batch->four[i / BRC_LANES].path[i % BRC_LANES])
+    bool sleeps = batch->looks && batch->will_linearise[i];
+    if (!sleeps && apart->path < DOZE_STEPS * batch->four[i / BRC_LANES].path[i % BRC_LANES])
         return;
     poly_sleep_point(batch->contacts, contact, p, columns->skin_left[contact] - apart->path);
 }
 
-/* The last point first. */
-static int compare_apart(const void *x, const void *y)
+/* In the order of points. By insertion, as there are some ten of a batch, which come from a few
+ * lists that are in this order already. */
+static void sort_apart(struct poly_apart *apart, int32_t n)
 {
-    const struct poly_apart *p = x, *q = y;
-    return (p->point < q->point) - (p->point > q->point);
+    for (int32_t i = 1; i < n; i++) {
+        struct poly_apart x = apart[i];
+        int32_t k = i;
+        for (; k > 0 && apart[k - 1].point > x.point; k--)
+            apart[k] = apart[k - 1];
+        apart[k] = x;
+    }
 }
 
 /* Computes all that is listed. Points that fall asleep move those behind them alone. */
@@ -237,10 +253,9 @@ void poly_work_off(struct poly_batch *batch)
 {
     batch->n_apart = 0;
     batch->loop->points(batch);
+    sort_apart(batch->apart, batch->n_apart);
     /* From the last one on, for a point that goes to sleep moves those behind it. */
-    if (batch->n_apart > 1)
-        qsort(batch->apart, (size_t)batch->n_apart, sizeof *batch->apart, compare_apart);
-    for (int32_t i = 0; i < batch->n_apart; i++)
+    for (int32_t i = batch->n_apart - 1; i >= 0; i--)
         come_apart(batch, &batch->apart[i]);
     batch->n_points = 0;
 }

@@ -62,13 +62,12 @@
            .flags = BRC_PARAM_AXIS)                                                               \
     CHOICE(evaluation, "auto|literal|condensed", "auto",                                          \
            "bond and springs of a pair: each at each step; or, while the same ones act, their "   \
-           "sum, linear in the motion since all were computed; auto: condensed where features "   \
-           "are not closed, in the quasi-static regime",                                          \
+           "sum, linear in the motion since all were computed; auto: condensed in the "           \
+           "quasi-static regime",                                                                 \
            .flags = BRC_PARAM_AXIS)                                                               \
     REAL(condensed_path, "1", "0.005", "(0, 0.05]",                                               \
          "condensed: relative path, in radii R, until all are computed anew",                     \
-         "evaluation=auto|condensed, features=strict|merged, evaluation=condensed or "            \
-         "run.regime=quasi_static")
+         "evaluation=auto|condensed, evaluation=condensed or run.regime=quasi_static")
 
 /* In the order of the words of their keys. */
 enum poly_strain_length { POLY_LENGTH_GAP, POLY_LENGTH_CENTRES };
@@ -100,11 +99,20 @@ struct poly_params {
     VECTOR(double, bond_old, 6, BRC_STATE, "N, N m", "bond force on b, its moment about a")      \
     VECTOR(double, normal_old, 6, BRC_STATE, "N, N m",                                           \
            "the same of the normal springs; linearised: of all springs and the bond")            \
-    VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m", "the same of the viscous forces")
+    VECTOR(double, viscous_old, 6, BRC_STATE, "N, N m",                                          \
+           "the same of the viscous forces; linearised: poly_tangent_end, m")
 
 struct poly_contacts {
     POLY_CONTACT_FIELDS(BRC_COLUMN, BRC_COLUMN3, BRC_COLUMN_RENAMED, BRC_COLUMN3_RENAMED)
 };
+
+/* Linearised, features: closed: path for which the tangent holds while no sleeper touches. In a
+ * column that such runs have no use for, as they go without viscosity: one more would change the
+ * hash of each state, and so all runs that sweeps have kept. */
+static inline double *poly_tangent_end(const struct poly_contacts *columns, size_t contact)
+{
+    return &columns->viscous_old[contact][0];
+}
 
 /* Points: feature pairs near enough to touch before the contact is listed anew. */
 #define POLY_POINT_FIELDS(SCALAR, VECTOR, RENAMED)                                         \
@@ -173,8 +181,8 @@ static inline bool poly_is_viscous(const struct brc_sim *sim)
 static inline bool poly_is_linearised(const struct brc_sim *sim)
 {
     const struct poly_params *p = poly_params_of(sim);
-    bool is_fit = sim->run.regime != BRC_DYNAMIC && p->features != POLY_CLOSED;
-    return BRC_OPTION(p->evaluation == POLY_LINEARISED || (p->evaluation == POLY_AUTO && is_fit));
+    return BRC_OPTION(p->evaluation == POLY_LINEARISED ||
+                      (p->evaluation == POLY_AUTO && sim->run.regime != BRC_DYNAMIC));
 }
 
 /* Smaller one of the radii of two cores about their centres. By it a relative path of the bodies
@@ -209,6 +217,8 @@ void poly_wake_points(struct brc_contacts *c, size_t contact, bool merged);
 /* A point that is awake and does not touch sleeps until its contact has no more skin left than
  * `sleep`. */
 void poly_sleep_point(struct brc_contacts *c, size_t contact, size_t p, double sleep);
+/* The same for the first one that sleeps already. */
+void poly_sleep_on(struct brc_contacts *c, size_t contact, double sleep);
 
 /* points.c: lists the points of contact i of the batch that may touch; computes all that is listed.
  * May work off what is listed when the lists are full. */
@@ -221,6 +231,9 @@ void poly_begin_tangent(struct poly_batch *batch, int32_t i);
 /* A contact that has been computed literally, and whose springs all touch, is linearised until it
  * has moved by the path for which they stay what they are. */
 void poly_linearise(struct poly_batch *batch, int32_t i);
+/* A linearised contact that has come to its end by `path`: where that is the end of a sleeper's
+ * bound alone, looks whether it touches. True when none does, and the end is farther on now. */
+bool poly_look_at_sleepers(struct poly_batch *batch, size_t contact, double path);
 /* Where contacts may be linearised, the works of bonds are not booked by themselves: what the bond
  * of a contact has gained since it was computed last is part of the work of all that acts. */
 void poly_account_bond(struct poly_batch *batch, int32_t i, double stored);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Time of a whole step of polyhedra: the 1000 bonded Voronoi cells of cases/gt12_block.yaml at half
- * of their peak load by each rule, condensed and literal, the same cells unbonded in isotropic
- * compression, the 512 dodecahedra, a step in which many bonds break against the steps before it,
- * and the part of a run that goes into lists. */
+ * of their peak load by two rules, condensed and literal, in the authors' own reading at a strain
+ * of 1e-3, condensed and literal, the same cells unbonded in isotropic compression, the 512
+ * dodecahedra, a step in which many bonds break against the steps before it, and the part of a run
+ * that goes into lists. */
 #include "bench.h"
 
 #include "common/rigs/rigs.h"
@@ -103,6 +104,29 @@ static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen,
         must(ctx, brc_sim_step(&sim));
     slow_down(&sim);
     for (int i = 0; i < AFTERWARDS; i++)
+        must(ctx, brc_sim_step(&sim));
+    for (int i = 0; i < REPEATS; i++)
+        bench_note(&t, step_seconds(&sim));
+    report_steps(&t, &sim, name, bar);
+    brc_sim_free(&sim);
+}
+
+/* The authors' reading: strains are those of the gap, five times as large, so that 1e-3 of the
+ * whole is where the other rows are at 5e-3. At the paper's own rate from the start. */
+static void authors(struct brc_context *ctx, const struct brc_specimen *specimen,
+                    const char *evaluation, const char *name, double bar)
+{
+    if (getenv("BENCH_ONLY") && strcmp(getenv("BENCH_ONLY"), name))
+        return;
+    const char *const settings[][2] = {{"features", "closed"},
+                                       {"strain_length", "gap"},
+                                       {"area", "eroded"},
+                                       {"evaluation", evaluation},
+                                       {NULL, NULL}};
+    struct brc_sim sim;
+    struct bench_times t = {.n = 0};
+    make(ctx, &sim, specimen, settings, "compression", "1e-6 1/s");
+    for (int i = 0; i < 1000; i++)
         must(ctx, brc_sim_step(&sim));
     for (int i = 0; i < REPEATS; i++)
         bench_note(&t, step_seconds(&sim));
@@ -308,7 +332,8 @@ int main(void)
     bonded(&ctx, &specimen, "merged", "auto", "polyhedra_bonded_1000_ms_step", 1.5);
     bonded(&ctx, &specimen, "merged", "literal", "polyhedra_bonded_literal_1000_ms_step", 1.5);
     bonded(&ctx, &specimen, "strict", "auto", "polyhedra_bonded_strict_1000_ms_step", 0);
-    bonded(&ctx, &specimen, "closed", "auto", "polyhedra_bonded_closed_1000_ms_step", 0);
+    authors(&ctx, &specimen, "auto", "polyhedra_bonded_closed_1000_ms_step", 1.5);
+    authors(&ctx, &specimen, "literal", "polyhedra_bonded_closed_literal_1000_ms_step", 4);
     unbonded(&ctx, &specimen, "auto", "polyhedra_unbonded_1000_ms_step", 3);
     unbonded(&ctx, &specimen, "literal", "polyhedra_unbonded_literal_1000_ms_step", 3);
     if (getenv("BENCH_ONLY"))

@@ -48,24 +48,31 @@ static size_t count_held(const struct fixture *f)
 
 /* The error of the load falls with the path between two literal evaluations. (Where springs slip,
  * it is not smooth in the path: the two are far apart.) */
-static void load_is_that_of_literal_springs(void **state)
+static void check_load(struct fixture *f, const char *rule)
 {
-    struct fixture *f = *state;
-    double literal = force_after(f, "compression", "eps_th: 0.05; evaluation: literal"), error[2];
     static const char *const paths[2] = {"0.01", "0.0002"};
+    char settings[160];
+    double error[2];
+    snprintf(settings, sizeof settings, "eps_th: 0.05; %s; evaluation: literal", rule);
+    double literal = force_after(f, "compression", settings);
     for (int i = 0; i < 2; i++) {
-        char settings[100];
         snprintf(settings, sizeof settings,
-                 "eps_th: 0.05; evaluation: condensed; condensed_path: %s", paths[i]);
+                 "eps_th: 0.05; %s; evaluation: condensed; condensed_path: %s", rule, paths[i]);
         error[i] = fabs(force_after(f, "compression", settings) / literal - 1);
-        print_message("path %s R: load off by %.2e, %zu rows condensed, residual %.1e\n", paths[i],
-                      error[i], count_held(f), brc_ledger_residual(&f->sim.ledger));
+        print_message("%s, path %s R: load off by %.2e, %zu rows condensed, residual %.1e\n", rule,
+                      paths[i], error[i], count_held(f), brc_ledger_residual(&f->sim.ledger));
         assert_true(count_held(f) > 20);
         assert_true(brc_ledger_residual(&f->sim.ledger) < 1e-12);
         assert_true(f->sim.events.table.n == 0);
     }
     assert_true(error[0] > 0 && error[0] < 2e-3);
     assert_true(error[1] < error[0] / 4);
+}
+
+static void load_is_that_of_literal_springs(void **state)
+{
+    check_load(*state, "features: merged");
+    check_load(*state, "features: closed");
 }
 
 /* Bonds begin to pull, or cease to, within paths of this size: a tangent that went on through that
@@ -136,9 +143,11 @@ static void shear(struct fixture *f)
 static void the_same_springs_act(void **state)
 {
     struct fixture *f = *state;
-    static const char *const settings[] = {"eps_th: 0.05", "bonds: off",
-                                           "features: strict; condensed_path: 0.05"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const settings[] = {
+        "eps_th: 0.05", "bonds: off", "features: strict; condensed_path: 0.05",
+        "eps_th: 0.05; features: closed; strain_length: gap; area: eroded",
+        "eps_th: 0.05; features: closed; condensed_path: 0.05"};
+    for (int i = 0; i < 5; i++) {
         struct changes changes = {.n = 0};
         load(f, i == 1 ? "none" : "compression", settings[i], "");
         for (int k = 0; k < STEPS; k += 10) {
@@ -210,56 +219,81 @@ static void new_lists_count(void **state)
     CHECK_NEAR(force_of_neighbours(*state, "condensed"), literal, 0, 0.01);
 }
 
-/* The sum that is carried along is what bond and springs give literally, for the present pose. */
-static void tangent_is_the_slope(void **state)
+/* Force on b and moment on a of a contact. */
+static void wrench_of(double w[6], const struct brc_contacts *c, size_t i)
 {
-    struct fixture *f = *state;
-    double largest = 0, off = 0, plain = 0;
-    press(f, "eps_th: 0.05; evaluation: condensed; condensed_path: 0.005; mu: 0", "");
-    fixture_steps(f, STEPS);
+    brc_copy(w, c->f[i]);
+    brc_copy(w + 3, c->ta[i]);
+}
+
+/* By how much all contacts are off that are well on their way from one evaluation to the next, and
+ * how far they have changed since the last: squared forces and, over the size of a grain, moments.
+ */
+struct slope {
+    double off[2], change[2];
+    size_t n;
+};
+
+static void look_at_slope(struct fixture *f, struct slope *s)
+{
     struct brc_contacts *c = &f->sim.pairs;
     struct poly_contacts *columns = c->model_columns;
-    double(*condensed)[3] = malloc(c->n * sizeof *condensed);
-    double(*held)[6] = malloc(c->n * sizeof *held);
-    bool *was_held = malloc(c->n * sizeof *was_held);
+    double(*then)[6] = test_malloc(c->n * sizeof *then);
+    double(*held)[6] = test_malloc(c->n * sizeof *held);
+    bool *was_held = test_malloc(c->n * sizeof *was_held);
     for (size_t i = 0; i < c->n; i++) {
-        const double *shift = columns->motion[i];
-        was_held[i] = columns->is_linearised[i] &&
-                      shift[POLY_MOTION_PATH] > 0.3 * shift[POLY_MOTION_END] &&
-                      shift[POLY_MOTION_PATH] < 0.9 * shift[POLY_MOTION_END];
-        memcpy(condensed[i], c->f[i], sizeof condensed[i]);
+        const double *shift = columns->motion[i], end = shift[POLY_MOTION_END];
+        was_held[i] = columns->is_linearised[i] && shift[POLY_MOTION_PATH] > 0.3 * end &&
+                      shift[POLY_MOTION_PATH] < 0.9 * end;
+        wrench_of(then[i], c, i);
         memcpy(held[i], columns->linearised_force[i], sizeof held[i]);
         columns->is_linearised[i] = 0;
     }
-    double now[3];
     fixture_carry(f, 0);
-    size_t n = 0;
     for (size_t i = 0; i < c->n; i++) {
-        if (!was_held[i])
-            continue;
-        brc_sub(now, c->f[i], condensed[i]);
-        off += brc_norm2(now);
-        for (int k = 0; k < 3; k++)
-            now[k] = c->f[i][k] - held[i][k];
-        plain += brc_norm2(now);
-        largest = fmax(largest, brc_norm(c->f[i]));
-        n++;
+        double now[6];
+        wrench_of(now, c, i);
+        for (int k = 0; k < 6 && was_held[i]; k++) {
+            double change = now[k] - (k < 3 ? held[i][k] : -held[i][k]);
+            s->off[k / 3] += (now[k] - then[i][k]) * (now[k] - then[i][k]);
+            s->change[k / 3] += change * change;
+        }
+        s->n += was_held[i];
     }
-    print_message("%zu rows: change of force %.2e, off by %.2e, largest force %.2e\n", n,
-                  sqrt(plain), sqrt(off), largest);
-    assert_true(n > 10);
-    assert_true(off < 0.05 * 0.05 * plain);
-    free(condensed);
-    free(held);
-    free(was_held);
+    test_free(then);
+    test_free(held);
+    test_free(was_held);
+}
+
+/* The sum that is moved along is what bond and springs give literally, for the present pose. */
+static void tangent_is_the_slope(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const rules[] = {"merged", "closed"};
+    for (int i = 0; i < 2; i++) {
+        char settings[120];
+        struct slope s = {.n = 0};
+        snprintf(settings, sizeof settings,
+                 "eps_th: 0.05; evaluation: condensed; condensed_path: 0.005; mu: 0; features: %s",
+                 rules[i]);
+        press(f, settings, "");
+        for (int k = 0; k < 4; k++) {
+            fixture_steps(f, STEPS / 4);
+            look_at_slope(f, &s);
+        }
+        print_message("%s, %zu rows: change of force %.2e, off by %.2e; of moment %.2e, %.2e\n",
+                      rules[i], s.n, sqrt(s.change[0]), sqrt(s.off[0]), sqrt(s.change[1]),
+                      sqrt(s.off[1]));
+        assert_true(s.n > 10);
+        for (int k = 0; k < 2; k++)
+            assert_true(s.off[k] < 0.05 * 0.05 * s.change[k]);
+    }
 }
 
 /* The same bits with every instruction set, through breaks, and from the middle of a path on. */
-static void bits_are_the_same(void **state)
+static void check_bits(struct fixture *f, const char *settings, size_t n_held)
 {
-    struct fixture *f = *state;
     static const char *const sets[] = {"simd: base", "simd: avx2", "simd: avx512"};
-    static const char settings[] = "eps_th: 1e-3; evaluation: condensed; condensed_path: 0.01";
     char path[64];
     uint64_t hash[BRC_N_SIMD] = {0};
     for (int set = 0; set < BRC_N_SIMD; set++) {
@@ -271,7 +305,7 @@ static void bits_are_the_same(void **state)
         press(f, settings, sets[set]);
         fixture_steps(f, STEPS);
         hash[set] = brc_sim_hash(&f->sim);
-        assert_true(f->sim.events.table.n > 0 && count_held(f) > 5);
+        assert_true(f->sim.events.table.n > 0 && count_held(f) >= n_held);
     }
     assert_true(hash[0] == hash[1] && hash[0] == hash[2]);
     snprintf(path, sizeof path, "/tmp/breccia-test-%ld-condensed.h5", (long)getpid());
@@ -283,6 +317,13 @@ static void bits_are_the_same(void **state)
     fixture_steps(f, STEPS - STEPS / 2 - 3);
     unlink(path);
     assert_true(brc_sim_hash(&f->sim) == hash[0]);
+}
+
+static void bits_are_the_same(void **state)
+{
+    check_bits(*state, "eps_th: 1e-3; evaluation: condensed; condensed_path: 0.01", 6);
+    check_bits(*state, "eps_th: 1e-3; features: closed", 6);
+    check_bits(*state, "eps_th: 1e-3; features: closed; evaluation: literal", 0);
 }
 
 int main(void)

@@ -48,6 +48,8 @@ static void count(struct twin_sum *sum, const double pa[3], const double pb[3], 
     double d[3], middle[3], m[3], distance;
     brc_sub(d, pb, pa);
     distance = brc_normalise(d, d);
+    sum->closed += distance < rest - sum->doubt;
+    sum->doubtful += fabs(distance - rest) <= sum->doubt;
     if (!force || distance == 0)
         return;
     for (int k = 0; k < 3; k++)
@@ -137,9 +139,9 @@ static void vertex_face(struct twin_sum *sum, const double p[3], const struct tw
 {
     double r[3], best[3] = {0, 0, 0}, nearest = HUGE_VAL;
     bool inside = on_face(r, c, face, p);
-    if (inside && distance(p, r) < rest) {
-        sum->vertex_face++;
-        count(sum, of_b ? r : p, of_b ? p : r, rest, true);
+    if (inside) {
+        sum->vertex_face += distance(p, r) < rest;
+        count(sum, of_b ? r : p, of_b ? p : r, rest, distance(p, r) < rest);
     }
     if (inside || strict)
         return;
@@ -152,8 +154,27 @@ static void vertex_face(struct twin_sum *sum, const double p[3], const struct tw
             brc_copy(best, r);
         }
     }
-    if (nearest < rest)
-        count(sum, of_b ? best : p, of_b ? p : best, rest, true);
+    count(sum, of_b ? best : p, of_b ? p : best, rest, nearest < rest);
+}
+
+/* Parallel edges by the rule: where the middle of the part of a that faces b is closest to b. False
+ * when they are not parallel. */
+static bool parallel(const double (*a)[3], const double (*b)[3], double ra[3], double rb[3])
+{
+    double u[3], v[3], w[3], middle = 0;
+    brc_sub(u, a[1], a[0]);
+    brc_sub(v, b[1], b[0]);
+    brc_cross(w, u, v);
+    if (brc_norm2(w) > 1e-12 * brc_norm2(u) * brc_norm2(v))
+        return false;
+    for (int i = 0; i < 2; i++) {
+        brc_sub(w, b[i], a[0]);
+        middle += 0.5 * fmin(fmax(brc_dot(w, u) / brc_norm2(u), 0), 1);
+    }
+    brc_copy(ra, a[0]);
+    brc_axpy(ra, middle, u);
+    on_segment(rb, ra, b[0], b[1]);
+    return true;
 }
 
 /* Closest points of the lines through two edges, true when both are strictly inside the edges. */
@@ -178,16 +199,18 @@ static bool crossing(const double (*a)[3], const double (*b)[3], double ra[3], d
 static void edge_edge(struct twin_sum *sum, const double (*a)[3], const double (*b)[3], double rest,
                       bool strict)
 {
-    double ra[3], rb[3], r[3], nearest = HUGE_VAL;
+    double ra[3] = {0}, rb[3] = {0}, r[3], nearest = HUGE_VAL;
     if (crossing(a, b, ra, rb)) {
-        if (distance(ra, rb) < rest) {
-            sum->edge_edge++;
-            count(sum, ra, rb, rest, true);
-        }
+        sum->edge_edge += distance(ra, rb) < rest;
+        count(sum, ra, rb, rest, distance(ra, rb) < rest);
         return;
     }
     if (strict)
         return;
+    if (parallel(a, b, ra, rb)) {
+        count(sum, ra, rb, rest, distance(ra, rb) < rest);
+        return;
+    }
     for (int i = 0; i < 2; i++) { /* the closest pair has an end of one of them */
         on_segment(r, a[i], b[0], b[1]);
         if (distance(a[i], r) < nearest) {

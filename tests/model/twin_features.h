@@ -23,6 +23,10 @@ struct twin_sum {
     int vertex_edge, vertex_vertex;
     double overlap[3], moment[3];
     double closest; /* of any pair counted in overlap */
+    /* pairs of closed sets nearer than rest - doubt, and those within doubt of rest: who is right
+     * about them is a matter of round-off */
+    int closed, doubtful;
+    double doubt;
 };
 
 void twin_core_from(struct twin_core *core, const struct brc_convex *c);
