@@ -16,7 +16,7 @@ do for [i = 1:2] {
         125.2 + 5.342 * x with lines lc 2 dt 2 title "brittle, paper", \
         125.5 + 8.933 * x with lines lc 3 dt 3 title "Augig granite"
     set output out."/elastic.".types[i]
-    set key right top
+    set key right center
     set xlabel "{/Symbol h}, shear stiffness over normal stiffness"
     set ylabel "E over E-bar; {/Symbol n}"
     plot [-0.05:1.05][0:1.1] out."/modulus.dat" with yerrorlines lc 1 pt 7 title "E over E-bar", \

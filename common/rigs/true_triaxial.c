@@ -75,7 +75,8 @@ struct columns {
 static const struct brc_field columns_fields[] = {COLUMNS(BRC_FIELD, BRC_FIELD3)};
 #undef BRC_OWNER
 
-/* What the case has asked for. */
+/* What the case has asked for. It is read again from the text of the case after a restart, so that
+ * the saved state holds numbers alone. */
 struct plan {
     struct brc_stage stage[BRC_MAX_STAGES];
     int n;
@@ -145,7 +146,8 @@ static int set_laws(struct brc_sim *sim, const double sigma[3])
     return 0;
 }
 
-/* A stage by strain has the start of a test of that strain. */
+/* A stage by strain has the start of a test of that strain: the loading's first rate is a part of
+ * strain_max, which the case has none of here. */
 static void set_strain_max(struct brc_rig *rig, const struct brc_stage *stage)
 {
     if (stage->is_to_strain)
@@ -169,6 +171,7 @@ static void set_speed(struct brc_sim *sim, int axis, double speed)
     }
 }
 
+/* Of one platen: the two approach by the rate together, so that the middle stays where it is. */
 static double driven_speed(const struct brc_rig *rig, int axis)
 {
     return 0.5 * rig->stage_sense * rig->rate * rig->length[axis];
@@ -199,6 +202,8 @@ static int place(struct brc_sim *sim)
 }
 
 /* Only axes that begin to move: the grains of a held one would run into its platens. */
+/* Axes that are held or pushed begin at rest: how fast a pushed one will move hangs on Poisson's
+ * ratio, which nobody knows yet. */
 static void field(const struct brc_sim *sim, size_t grain, double v[3])
 {
     const struct brc_rig *rig = &sim->rig;
@@ -222,12 +227,15 @@ static double length_now(const struct brc_sim *sim, int axis)
 
 /* By the platens and not by the grains: gaps at the corners are part of the area, as a platen of a
  * machine has them under it, too. */
+/* Between the platens of the other axes, and not of the grains: a dilating pack has a rough side,
+ * and the platens' distance is what its work goes with. */
 static double area_now(const struct brc_sim *sim, int axis)
 {
     return length_now(sim, (axis + 1) % 3) * length_now(sim, (axis + 2) % 3);
 }
 
 /* Mean of both platens: they differ by what the grains between them are accelerated with. */
+/* The mean of both platens, as they differ while the specimen accelerates. */
 static double stress_now(const struct brc_sim *sim, int axis)
 {
     const struct brc_platen *p = &sim->rig.platen[pair_of[axis]];
@@ -284,6 +292,8 @@ static int next_stage(struct brc_sim *sim, const double reached[3])
 
 /* Sums before a stage may end: the row that two stages share has each step in it once. z comes
  * last, as its velocity is that of the rate which the load of this step has chosen. */
+/* In this order: a stage that ends does so on the stresses of this step; its successor's laws hold
+ * from the same step on; and z is driven last, as the loading may have changed the rate. */
 static int drive(struct brc_sim *sim)
 {
     struct brc_rig *rig = &sim->rig;
@@ -305,6 +315,7 @@ static int drive(struct brc_sim *sim)
 
 /* stop_drop ends the last stage alone: in those before it a load that falls may be what the path
  * asks for. */
+/* A drop of the load ends the last stage alone: those before are there to reach a state. */
 static const char *end(const struct brc_sim *sim)
 {
     const struct state *s = sim->rig.own_scalars;
@@ -318,6 +329,7 @@ static const char *end(const struct brc_sim *sim)
 
 /* The plan itself was read by place; strain_max is no part of the state, as each stage has its own.
  */
+/* params are those of the case: what a stage has made of them is not saved. */
 static void restore(struct brc_sim *sim)
 {
     set_strain_max(&sim->rig, stage_now(sim));
@@ -340,6 +352,8 @@ static double missed(const struct state *s, const double sigma[3], double steps)
 
 /* Means of the step, like all of the curve: q of the means is not the mean of q, and smaller where
  * stresses shake. */
+/* Stresses and strains are means over the same steps, or a row's stress would be half a row behind
+ * its strain, and every modulus of a quickly loaded test too small. */
 static void fill_row(struct brc_sim *sim, size_t row, double steps)
 {
     struct columns *c = sim->rig.curve.own_columns;
