@@ -90,10 +90,17 @@ static void slow_down(struct brc_sim *sim)
     }
 }
 
+/* BENCH_ONLY names the one row that is wanted, for comparisons by turns. */
+static bool is_left_out(const char *name)
+{
+    const char *only = getenv("BENCH_ONLY");
+    return only && strcmp(only, name) != 0;
+}
+
 static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen, const char *rule,
                    const char *evaluation, const char *name, double bar)
 {
-    if (getenv("BENCH_ONLY") && strcmp(getenv("BENCH_ONLY"), name))
+    if (is_left_out(name))
         return;
     const char *const settings[][2] = {
         {"features", rule}, {"evaluation", evaluation}, {NULL, NULL}};
@@ -116,7 +123,7 @@ static void bonded(struct brc_context *ctx, const struct brc_specimen *specimen,
 static void authors(struct brc_context *ctx, const struct brc_specimen *specimen,
                     const char *evaluation, const char *name, double bar)
 {
-    if (getenv("BENCH_ONLY") && strcmp(getenv("BENCH_ONLY"), name))
+    if (is_left_out(name))
         return;
     const char *const settings[][2] = {{"features", "closed"},
                                        {"strain_length", "gap"},
@@ -146,7 +153,7 @@ static void compress(struct brc_sim *sim, double rate)
 static void unbonded(struct brc_context *ctx, const struct brc_specimen *specimen,
                      const char *evaluation, const char *name, double bar)
 {
-    if (getenv("BENCH_ONLY") && strcmp(getenv("BENCH_ONLY"), name))
+    if (is_left_out(name))
         return;
     const char *const settings[][2] = {{"bonds", "off"}, {"evaluation", evaluation}, {NULL, NULL}};
     struct brc_sim sim;
