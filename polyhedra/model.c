@@ -154,9 +154,6 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
         oblique.mean_cos);
 }
 
-/* Contacts with platens have no tangents, sleepers or feature pairs: the fields that are for these
- * are not saved there (no_platens), by their names in files. There is no after_break: a broken bond
- * needs no new list, since collision acts between bonded grains, too. */
 /* Move a number when what it stands for computes otherwise; tests/cli/test_physics.sh watches. */
 static const struct brc_physics physics[] = {{"polyhedra", 1, NULL},
                                              {"features closed", 2, "features=closed"},
@@ -165,6 +162,9 @@ static const struct brc_physics physics[] = {{"polyhedra", 1, NULL},
                                              {"condensed", 1, "evaluation=auto|condensed"},
                                              {NULL, 0, NULL}};
 
+/* Contacts with platens have no tangents, sleepers or feature pairs: the fields that are for these
+ * are not saved there (no_platens), by their names in files. There is no after_break: a broken bond
+ * needs no new list, since collision acts between bonded grains, too. */
 const struct brc_model brc_model_polyhedra = {
     .name = "polyhedra",
     .citation = "S.A. Galindo-Torres, D.M. Pedroso, D.J. Williams, L. Li: Breaking processes in "

@@ -253,14 +253,14 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
              census.oblique.mean_cos, census.is_projected ? " (areas are projected)" : "");
 }
 
-/* Not saved (no_pairs and so on): moments on grains, which the loop adds to the bodies at once, and
- * what only points of platens have. */
 /* Move a number when what it stands for computes otherwise; tests/cli/test_physics.sh watches. */
 static const struct brc_physics physics[] = {{"vgcm", 1, NULL},
                                              {"brittle", 1, "softening=none"},
                                              {"softening", 1, "softening=linear|bilinear"},
                                              {NULL, 0, NULL}};
 
+/* Not saved (no_pairs and so on): moments on grains, which the loop adds to the bodies at once, and
+ * what only points of platens have. */
 const struct brc_model brc_model_vgcm = {
     .name = "vgcm",
     .citation = "M. Candeias, N. Monteiro Azevedo, M. L. Braga Farinha: VGCM3D - A 3D rigid "

@@ -51,28 +51,18 @@ function law_of_table2(law, paper_of,    x, y, z, k, p, choices, tension, brazil
     }
 }
 
+# "name value name value": what the paper gives; 3 to 12 are sigma_1 [MPa] at that pressure
+function read_paper(list, paper_of,    word, n, i) {
+    n = split(list, word, " ")
+    for (i = 1; i < n; i += 2)
+        paper_of[word[i]] = word[i + 1]
+}
+
 function table2(    paper_of) {
     choices_of("as read|energies of the print|kink at a third|linear softening|damage by strength|gap of 0.7 mm|gap of 1 mm|all facets|large facets|exact points|one point|looser packing|damping of all motion|damping along the velocity|half the target|a quarter of the target|of it 0.3")
-    split("", paper_of)
-    paper_of["ucs"] = 124.5
-    paper_of["direct"] = 7.4
-    paper_of["indirect"] = 9.1
-    paper_of["c"] = 24.8
-    paper_of["phi"] = 46.6
-    paper_of[3] = 143.6
-    paper_of[6] = 162.5
-    paper_of[9] = 181.5
-    paper_of[12] = 200.4
+    read_paper("ucs 124.5 direct 7.4 indirect 9.1 c 24.8 phi 46.6 3 143.6 6 162.5 9 181.5 12 200.4", paper_of)
     law_of_table2("softening", paper_of)
-    paper_of["ucs"] = 125.2
-    paper_of["direct"] = 16.4
-    paper_of["indirect"] = 8.9
-    paper_of["c"] = 27.1
-    paper_of["phi"] = 43.2
-    paper_of[3] = 141.3
-    paper_of[6] = 157.3
-    paper_of[9] = 173.3
-    paper_of[12] = 189.3
+    read_paper("ucs 125.2 direct 16.4 indirect 8.9 c 27.1 phi 43.2 3 141.3 6 157.3 9 173.3 12 189.3", paper_of)
     law_of_table2("brittle", paper_of)
 }
 

@@ -125,6 +125,7 @@ static int read_old(struct brc_context *ctx, struct brc_converge_record *r, cons
 /* Flushed at once: a line that is only in memory would be lost with the program. */
 static int write_text(struct brc_context *ctx, struct brc_converge_record *r, const char *text)
 {
+    BRC_TRY(brc_run_check_open(ctx, r->file, r->path));
     if (fseek(r->file, 0, SEEK_END) != 0 || fputs(text, r->file) < 0 || fflush(r->file) != 0)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
     return 0;

@@ -50,6 +50,9 @@ int brc_run_keep_case(struct brc_context *ctx, const char *dir, const struct brc
  * writes there; its content stays. For the log, and for the record of a ladder. Where it fails
  * *file is to be closed, too, unless it is NULL. */
 int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FILE **file);
+/* Fails where path is another file by now than the one that was opened: what is written would go
+ * with that one, without a word. Before each line that is added. */
+int brc_run_check_open(struct brc_context *ctx, FILE *file, const char *path);
 /* Removes what runs write: all but case and log, and everything, with the folder when it is empty
  * then. */
 int brc_run_remove_results(struct brc_context *ctx, const char *dir);

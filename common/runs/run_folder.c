@@ -226,6 +226,18 @@ int brc_run_open(struct brc_context *ctx, const char *dir, const char *name, FIL
     return 0;
 }
 
+int brc_run_check_open(struct brc_context *ctx, FILE *file, const char *path)
+{
+    struct stat opened, there;
+    if (fstat(fileno(file), &opened) == 0 && stat(path, &there) == 0 &&
+        opened.st_dev == there.st_dev && opened.st_ino == there.st_ino)
+        return 0;
+    BRC_FAIL(ctx, BRC_ERR_IO,
+             "%s was removed or replaced while runs were added to it, as git does on a change of "
+             "branch; call again, and what it lacks is done",
+             path);
+}
+
 /* The case and the log stay: the one has taken its place already, and the other is locked. */
 int brc_run_remove_results(struct brc_context *ctx, const char *dir)
 {

@@ -42,6 +42,20 @@ static int keep(struct brc_context *ctx, struct brc_run_record *r, const char *l
     return 0;
 }
 
+/* A line that a stop has cut is dropped. Anything else without an end of line is the user's: a
+ * record by mistake may be a file of one line. */
+static int drop_cut(struct brc_context *ctx, struct brc_run_record *r, const char *text,
+                    const char *line, size_t n)
+{
+    size_t n_head = n < sizeof head - 1 ? n : sizeof head - 1;
+    if (memcmp(line, head, n_head) != 0)
+        BRC_FAIL(ctx, BRC_ERR_INPUT,
+                 "%s: its end is no line of a record of runs; name another file", r->path);
+    if (n > 0 && r->file && ftruncate(fileno(r->file), line - text) != 0)
+        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
+    return 0;
+}
+
 /* Marks left by git where two versions did not fit together are lines like any other: they are
  * refused, and the message says what to do. */
 static int read_lines(struct brc_context *ctx, struct brc_run_record *r, char *text, size_t n)
@@ -57,9 +71,7 @@ static int read_lines(struct brc_context *ctx, struct brc_run_record *r, char *t
                      r->path, line);
         BRC_TRY(keep(ctx, r, line, key));
     }
-    if (r->file && ftruncate(fileno(r->file), line - text) != 0)
-        BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path, strerror(errno));
-    return 0;
+    return drop_cut(ctx, r, text, line, n - (size_t)(line - text));
 }
 
 /* The text is kept as long as the record: rows point into it. */
@@ -199,6 +211,7 @@ int brc_run_record_add(struct brc_context *ctx, struct brc_run_record *r, const 
         BRC_FAIL(ctx, BRC_ERR_INTERNAL, "a line for %s is not whole", r->path);
     memcpy(kept, line, n);
     kept[n] = '\n';
+    BRC_TRY(brc_run_check_open(ctx, r->file, r->path));
     ssize_t done = write(fileno(r->file), kept, n + 1);
     if (done != (ssize_t)n + 1)
         BRC_FAIL(ctx, BRC_ERR_IO, "cannot write %s: %s", r->path,

@@ -105,6 +105,11 @@ expect 0 " 1 to do" $sweep -o cut --cache cut.jsonl
 sed 's/"steps": 314/"steps": 315/' before/runs.jsonl >changed.jsonl
 expect 3 "is not as it was written" $sweep -o changed --cache changed.jsonl
 
+# a record that is no record is the user's, also without an end of line
+printf 'my notes' >notes.txt
+expect 3 "no line of a record" $sweep -o notes --cache notes.txt
+[ "$(cat notes.txt)" = "my notes" ] || fail "a file that is no record is cut"
+
 # failures are told, the others go on, and the raw runs are kept where that is asked for
 cat >cases/failing.yaml <<'END'
 breccia: 1
@@ -152,6 +157,20 @@ values() {
     cut -d, -f1-7 "$1"
 }
 [ "$(values part/runs.csv)" = "$(values whole/runs.csv)" ] || fail "a stopped sweep has other values"
+
+# a record that is replaced while the sweep runs (git does so) does not take runs with it
+$long -o moved >moved.txt 2>&1 &
+for try in $(seq 400); do
+    if [ -s moved/runs.jsonl ]; then break; fi
+    sleep 0.05
+done
+cp moved/runs.jsonl copy.jsonl
+mv copy.jsonl moved/runs.jsonl
+wait $!
+[ $? -eq 4 ] || fail "a record that was replaced goes unnoticed"
+grep -q "was removed or replaced" moved.txt || { fail "no word of a record that was replaced"; cat moved.txt; }
+good $long -o moved
+[ "$(wc -l <moved/runs.jsonl)" -eq 6 ] || fail "runs are lost with a record that was replaced"
 
 # ranks share the runs
 if command -v mpirun >/dev/null; then
