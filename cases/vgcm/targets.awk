@@ -59,7 +59,7 @@ function read_paper(list, paper_of,    word, n, i) {
 }
 
 function table2(    paper_of) {
-    choices_of("as read|energies of the print|kink at a third|linear softening|damage by strength|gap of 0.7 mm|gap of 1 mm|all facets|large facets|exact points|one point|looser packing|damping of all motion|damping along the velocity|half the target|a quarter of the target|of it 0.3")
+    choices_of("as read|energies of the print|kink at a third|linear softening|damage by strength|gap of 0.7 mm|gap of 1 mm|all facets|large facets|exact points|one point|looser packing|damping of all motion|damping along the velocity|half the target|a quarter of the target|damping of all motion by 0.3")
     read_paper("ucs 124.5 direct 7.4 indirect 9.1 c 24.8 phi 46.6 3 143.6 6 162.5 9 181.5 12 200.4", paper_of)
     law_of_table2("softening", paper_of)
     read_paper("ucs 125.2 direct 16.4 indirect 8.9 c 27.1 phi 43.2 3 141.3 6 157.3 9 173.3 12 189.3", paper_of)
