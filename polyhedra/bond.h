@@ -21,6 +21,7 @@ struct poly_bonds4 {
 /* Where the two halves are now, in axes of space. */
 struct poly_bond_pose4 {
     brc_lanes pa[3], pb[3]; /* material points on a and b, from the centre of a */
+    brc_lanes arm[3];       /* where the forces act: midpoint of both, or the grain's on a platen */
     brc_lanes n[3];         /* mean normal, from a to b */
     brc_lanes twist;        /* rad, turn of b relative to a about n; 0 without torsion */
 };
@@ -28,7 +29,6 @@ struct poly_bond_pose4 {
 struct poly_bond_state4 {
     brc_lanes f[3];    /* N, force on b at the place; a gets the opposite */
     brc_lanes m;       /* N m, moment on b along n; a gets the opposite */
-    brc_lanes arm[3];  /* place: midpoint of the material points, from the centre of a */
     brc_lanes opening; /* m, positive apart */
     brc_lanes term[3]; /* of eq 15: tension, shear, torsion */
     brc_lanes energy;  /* J, stored */
@@ -40,6 +40,14 @@ BRC_LANES_INLINE void poly_mean_normal(brc_lanes n[3], const brc_lanes na[3], co
 {
     poly_sub3(n, na, nb);
     poly_scale3(n, n, 1 / brc_lanes_sqrt(brc_lanes_dot(n, n)));
+}
+
+/* Both halves pull at the midpoint of their material points, so that force and moment balance
+ * though these have come apart. */
+BRC_LANES_INLINE void poly_arm_of_pair(struct poly_bond_pose4 *pose)
+{
+    for (int k = 0; k < 3; k++)
+        pose->arm[k] = 0.5 * (pose->pa[k] + pose->pb[k]);
 }
 
 /* Turn about n of two tangents that were one at the start; 0 where the mask is not set. */
@@ -63,8 +71,6 @@ BRC_LANES_INLINE brc_lanes poly_twist(const brc_lanes n[3], const brc_lanes ta[3
     return angle;
 }
 
-/* Both halves pull at the midpoint of their material points, so that force and moment balance
- * though these have come apart. */
 BRC_LANES_INLINE void poly_bond_law(struct poly_bond_state4 *r, const struct poly_bonds4 *bond,
                                     const struct poly_bond_pose4 *pose)
 {
@@ -78,7 +84,6 @@ BRC_LANES_INLINE void poly_bond_law(struct poly_bond_state4 *r, const struct pol
     for (int k = 0; k < 3; k++) {
         r->f[k] = -bond->kn * open * n[k]; /* eq:gt12:11 */
         r->f[k] -= bond->kt * ut[k];       /* eq:gt12:13 */
-        r->arm[k] = 0.5 * (pose->pa[k] + pose->pb[k]);
     }
     brc_lanes limit = bond->length * bond->eps_th;
     brc_lanes slip = brc_lanes_sqrt(brc_lanes_dot(ut, ut));

@@ -24,7 +24,7 @@ bool poly_bond_of_contact(struct poly_bond *r, const struct brc_sim *sim,
     *r = (struct poly_bond){
         .kn = bonds.kn[0], .kt = bonds.kt[0], .ktheta = bonds.ktheta[0], .energy = all.energy[0]};
     poly_lane3(r->n, pose.n, 0);
-    poly_lane3(r->x, all.arm, 0);
+    poly_lane3(r->x, pose.arm, 0);
     brc_add(r->x, r->x, sim->bodies.x[a]);
     poly_lane3(r->term, all.term, 0);
     return intact[0] != 0;

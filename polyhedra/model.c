@@ -155,7 +155,7 @@ static void describe(const struct brc_sim *sim, const void *state, char *text, s
 }
 
 /* Move a number when what it stands for computes otherwise; tests/cli/test_physics.sh watches. */
-static const struct brc_physics physics[] = {{"polyhedra", 1, NULL},
+static const struct brc_physics physics[] = {{"polyhedra", 2, NULL},
                                              {"features closed", 2, "features=closed"},
                                              {"features strict", 1, "features=strict"},
                                              {"features merged", 1, "features=merged"},

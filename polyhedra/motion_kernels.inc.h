@@ -241,7 +241,10 @@ BRC_LANES_INLINE void poly_gather_rotation(brc_lanes r[9], double (*rotation)[3]
 }
 
 /* The hold of a platen is half a bond: without torsion and, unless it holds in all directions,
- * without shear. The platen is rigid and does not turn: its normal is the hold's. */
+ * without shear. The platen is rigid and does not turn: its normal is the hold's, and what is
+ * stored changes with the grain's material point alone, so the force acts there. Half way to the
+ * platen's, which a grain that slides along it leaves behind, it would have a moment that no energy
+ * belongs to, and spin the grain. */
 BRC_LANES_INLINE void poly_bonds_to_holds(struct poly_bonds4 *bonds, struct poly_bond_pose4 *pose,
                                           const struct brc_sim *sim, const struct poly_index4 *i,
                                           const brc_lanes nb[3])
@@ -249,6 +252,7 @@ BRC_LANES_INLINE void poly_bonds_to_holds(struct poly_bonds4 *bonds, struct poly
     brc_lanes back[3];
     poly_scale3(back, nb, brc_lanes_all(-1));
     poly_mean_normal(pose->n, back, nb);
+    poly_set3(pose->arm, pose->pa[0], pose->pa[1], pose->pa[2]);
     for (int k = 0; k < BRC_LANES; k++)
         if (brc_sim_platen(sim, i->b[k])->bonding != BRC_BONDING_FULL)
             bonds->kt[k] = 0;
@@ -284,6 +288,7 @@ BRC_LANES_INLINE brc_mask poly_bonds_of_four(struct poly_bonds4 *bonds,
     } else {
         poly_to_space4(na, ra, halves.na);
         poly_mean_normal(pose->n, na, nb);
+        poly_arm_of_pair(pose);
     }
     poly_mask3(pose->n, intact, pose->n);
     pose->twist = brc_lanes_all(0);
@@ -310,13 +315,13 @@ BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_con
     g->bond_stored = r.energy;
     g->broken = brc_lanes_where(intact, poly_bond_use(&r));
     poly_set3(g->bond.f, r.f[0], r.f[1], r.f[2]);
-    brc_lanes_cross(c, r.arm, r.f);
+    brc_lanes_cross(c, pose.arm, r.f);
     poly_scale3(g->bond.m, pose.n, r.m);
     poly_add3(g->bond.m, g->bond.m, c);
-    poly_sub3(back, r.arm, g->x);
+    poly_sub3(back, pose.arm, g->x);
     brc_lanes stiff = brc_lanes_max(bonds.kn, bonds.kt);
     g->k[0] = stiff;
-    g->k[1] = stiff * brc_lanes_dot(r.arm, r.arm) + bonds.ktheta;
+    g->k[1] = stiff * brc_lanes_dot(pose.arm, pose.arm) + bonds.ktheta;
     g->k[2] = stiff * brc_lanes_dot(back, back) + bonds.ktheta;
     if (!(flags & POLY_TANGENTS))
         return;
@@ -324,7 +329,7 @@ BRC_LANES_INLINE void poly_bond_forces(struct poly_batch *batch, struct poly_con
     g->bond_kt = bonds.kt;
     g->bond_ktheta = bonds.ktheta;
     poly_set3(g->bond_n, pose.n[0], pose.n[1], pose.n[2]);
-    poly_set3(g->bond_arm, r.arm[0], r.arm[1], r.arm[2]);
+    poly_set3(g->bond_arm, pose.arm[0], pose.arm[1], pose.arm[2]);
 }
 
 /* What contacts have used of their skin, `used` since they were looked at last; stable contacts

@@ -37,12 +37,13 @@ static void bond_law(struct result *r, const struct pose *p, bool torsion)
     poly_all3(ta, p->ta);
     poly_all3(tb, p->tb);
     poly_mean_normal(pose.n, na, nb);
+    poly_arm_of_pair(&pose);
     if (torsion)
         pose.twist = poly_twist(pose.n, ta, tb, brc_lanes_first(BRC_LANES));
     poly_bond_law(&all, &bonds, &pose);
     poly_lane3(r->n, pose.n, 0);
     poly_lane3(r->f, all.f, 0);
-    poly_lane3(r->x, all.arm, 0);
+    poly_lane3(r->x, pose.arm, 0);
     poly_lane3(r->term, all.term, 0);
     r->m = all.m[0];
     r->energy = all.energy[0];
