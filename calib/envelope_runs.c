@@ -4,6 +4,7 @@
  * are told apart. Runs of one rock differ in their seeds and in the keys of their tests alone. */
 #include "calib/envelope_runs.h"
 
+#include "calib/points_file.h"
 #include "common/base/folders.h"
 #include "common/output/summary_read.h"
 #include "common/runs/case.h"
@@ -127,28 +128,64 @@ static void compare_runs(struct calib_runs *all, const struct calib_run *a,
     }
 }
 
-/* Each against the first that has a point: a note needs the keys, not who is odd among many. */
+/* A run that has a point, against the first one: a note needs the keys, not who is odd among many.
+ */
+static int add_run(struct brc_context *ctx, const struct calib_envelope_options *o, const char *dir,
+                   struct calib_runs *out)
+{
+    char note[NOTE_SIZE] = "";
+    struct calib_run *r = &out->run[out->n];
+    BRC_TRY(read_run(ctx, o, dir, r, note));
+    const struct calib_peak *p = o->is_residual ? &r->residual : &r->peak;
+    bool has_point = isfinite(p->sigma_1) && isfinite(p->sigma_3);
+    if (has_point && !is_there(out, r)) {
+        compare_runs(out, &out->run[0], r);
+        out->n++;
+        return 0;
+    }
+    brc_log(ctx, "%s is left out: %s", r->dir,
+            has_point ? "it is a run that is there already" : note);
+    free(r->keys);
+    r->keys = NULL;
+    return 0;
+}
+
+/* The points of a table, of which nothing else is known. */
+static int add_points(struct brc_context *ctx, const struct calib_envelope_options *o,
+                      const char *path, size_t n_to_come, struct calib_runs *out)
+{
+    struct calib_peak *point;
+    size_t n;
+    BRC_TRY(calib_points_read(ctx, path, o->is_residual ? "_residual" : "", &point, &n));
+    struct calib_run *more = realloc(out->run, (out->n + n + n_to_come) * sizeof *more);
+    if (more)
+        out->run = more;
+    for (size_t i = 0; more && i < n; i++)
+        out->run[out->n++] = (struct calib_run){
+            .dir = path, .model = "-", .test = "-", .peak = point[i], .residual = point[i]};
+    free(point);
+    if (!more)
+        BRC_FAIL(ctx, BRC_ERR_MEMORY, "out of memory for the points of %s", path);
+    return 0;
+}
+
+static bool is_table(const char *path)
+{
+    size_t n = strlen(path);
+    return n > 4 && strcmp(path + n - 4, ".csv") == 0;
+}
+
 int calib_runs_read(struct brc_context *ctx, const struct calib_envelope_options *o,
                     struct calib_runs *out)
 {
     *out = (struct calib_runs){.run = brc_alloc(ctx, o->n, sizeof *out->run)};
     if (!out->run)
         return BRC_ERR_MEMORY;
-    for (size_t i = 0; i < o->n; i++) {
-        char note[NOTE_SIZE] = "";
-        struct calib_run *r = &out->run[out->n];
-        BRC_TRY(read_run(ctx, o, o->run[i], r, note));
-        const struct calib_peak *p = o->is_residual ? &r->residual : &r->peak;
-        bool has_point = isfinite(p->sigma_1) && isfinite(p->sigma_3);
-        if (has_point && !is_there(out, r)) {
-            compare_runs(out, &out->run[0], r);
-            out->n++;
-            continue;
-        }
-        brc_log(ctx, "%s is left out: %s", r->dir,
-                has_point ? "it is a run that is there already" : note);
-        free(r->keys);
-    }
+    for (size_t i = 0; i < o->n; i++)
+        if (is_table(o->run[i]))
+            BRC_TRY(add_points(ctx, o, o->run[i], o->n - i, out));
+        else
+            BRC_TRY(add_run(ctx, o, o->run[i], out));
     return 0;
 }
 

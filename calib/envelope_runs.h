@@ -8,7 +8,7 @@
 #include "common/base/names.h"
 
 struct calib_envelope_options {
-    const char *const *run; /* folders of runs */
+    const char *const *run; /* folders of runs, and tables: points_file.h */
     size_t n;
     const char *dir; /* of table and picture; NULL: none, the table goes to standard output alone */
     bool is_residual; /* envelope of what is left, instead of the peaks */
@@ -31,7 +31,8 @@ struct calib_runs {
 };
 
 /* Reads the runs; those without a point are left out, with a line on standard error that says why.
- * A folder that holds no run is an error. Freed also after a failure. */
+ * A folder that holds no run is an error, and so is a table that cannot be read. Freed also after a
+ * failure. */
 int calib_runs_read(struct brc_context *ctx, const struct calib_envelope_options *o,
                     struct calib_runs *out);
 void calib_runs_free(struct calib_runs *r);

@@ -289,9 +289,9 @@ static const struct command commands[] = {
      run_ladder},
     {"envelope", 'E', false, "RUN...", "fit Mohr-Coulomb and Hoek-Brown through the peaks of runs",
      "breccia envelope results/confined_*/vgcm -o results/envelope",
-     "RUN is a folder of results of compression, direct tension or a confined test; with -o "
-     "writes\n"
-     "envelope.csv, envelope_fits.csv and envelope.png. Runs without a peak are left out.\n",
+     "RUN is a folder of results of compression, direct tension or a confined test, or a .csv of\n"
+     "stresses with columns as 'sigma_3 [MPa],sigma_1 [MPa]'; with -o writes envelope.csv,\n"
+     "envelope_fits.csv and envelope.png. Runs without a peak are left out.\n",
      act_envelope},
     {"sweep", 'S', false, "FILE", "many runs: all combinations of values, seeds, models and cases",
      "breccia sweep cases/sweeps/strength.yaml --dry-run",

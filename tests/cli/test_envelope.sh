@@ -77,6 +77,32 @@ expect 0 "sigma_ci       100  100 to 100" "$breccia" envelope curve_1 curve_2 cu
 grep -q '^Hoek-Brown,m,1,10\(\.0000\|,\)\|^Hoek-Brown,m,1,9\.9999' hand/envelope_fits.csv || fail "m is not 10"
 grep -q '^Hoek-Brown,A,MPa,1000\|^Hoek-Brown,A,MPa,999\.99' hand/envelope_fits.csv || fail "A is not 1000 MPa"
 
+# points of a table: the same law, whatever the unit and the other columns are; what envelope.csv has it can read
+cat >points.csv <<'END'
+rock,sigma_1 [MPa],note,sigma_3 [kPa]
+a,80,"dry, cut",0
+a,100,,5000
+
+b,,not broken,7000
+b,160,,20000
+END
+expect 0 "c               20  20 to 20" "$breccia" envelope points.csv
+expect 0 "c               20  20 to 20" "$breccia" envelope points.csv line_1 line_2
+"$breccia" envelope pressed pressed_2 confined confined_2 -o again >again.txt
+"$breccia" envelope again/envelope.csv >of_table.txt
+[ "$(grep '^Hoek\|^Mohr' again.txt)" = "$(grep '^Hoek\|^Mohr' of_table.txt)" ] || fail "a table is fitted otherwise than its runs"
+expect 3 "points.csv:1: no column sigma_1_residual" "$breccia" envelope points.csv --residual
+bad_points() {
+    printf "$1" >bad.csv
+    expect 3 "$2" "$breccia" envelope bad.csv
+}
+bad_points 'sigma_1,sigma_3 [MPa]\n1,2\n' "bad.csv:1: column sigma_1 has no unit"
+bad_points 'sigma_1 [mm],sigma_3 [MPa]\n1,2\n' "bad.csv:1: column sigma_1 has no unit"
+bad_points 'sigma_1 [MPa]\n1\n' "bad.csv:1: no column sigma_3"
+bad_points 'sigma_1 [MPa],sigma_3 [MPa]\n1,2\n3,4x\n' "bad.csv:3: '4x' is not a stress"
+bad_points "" "bad.csv:1: no column sigma_1"
+expect 4 "cannot read the file of points" "$breccia" envelope nothing.csv
+
 # what is refused, and what to do about it
 expect 3 "2 points, it takes 3" "$breccia" envelope line_1 line_2
 expect 3 "at one confining stress (sigma_3 = 0 MPa)" "$breccia" envelope line_1 curve_1 pressed
