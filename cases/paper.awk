@@ -56,13 +56,16 @@ function is_at(run, place,    pair, k, n, at) {
     return 1
 }
 
+# what makes two packs different: the seed, or the size of the triangles of a mesh, which has none
+function sample(run) { return cell[run, "specimen.seed"] cell[run, "specimen.triangle_area"] }
+
 # x[seed] of a quantity at a place; how many
 function packs(place, quantity, x,    i, n) {
     split("", x)
     n = 0
     for (i = 1; i <= n_runs; i++)
         if (is_at(i, place) && cell[i, "code"] == 0 && cell[i, quantity] != "") {
-            x[cell[i, "specimen.seed"]] = cell[i, quantity]
+            x[sample(i)] = cell[i, quantity]
             n++
         }
     return n
