@@ -2,7 +2,7 @@
 # What the table of gt12 needs of the stress paths themselves and runs.csv does not have: dilation, when bonds break, and
 # curves to draw. A line a run by its key, so that runs whose folders are gone keep theirs; docs/make-paper says
 #     awk -f cases/paper.awk -f cases/gt12/paths.awk -v out=FOLDER runs.csv
-# which renews FOLDER/paths.csv and FOLDER/curves.csv from FOLDER/runs/KEY.
+# which renews FOLDER/{paths,curves,profiles}.csv from FOLDER/runs/KEY.
 
 function read_old(file, lines, head,    line, part) {
     while ((getline line < file) > 0)
@@ -71,6 +71,18 @@ function path_of(c, n, peak,    i, first, end, most, volume_at, half, sx, sy, sx
         total ? before / total : 0, total ? soon / total : 0, total ? late / total : 0, (best + 0.5) / 50 * end / peak)
 }
 
+# the deflection of a beam along it, beside Euler's and Timoshenko's of the same modulus
+function profile_of(key,    file, line, text, part) {
+    file = out "/runs/" key "/profile.csv"
+    getline line < file
+    while ((getline line < file) > 0) {
+        split(line, part, ",")
+        text = text sprintf("%s,%.5g,%.5g,%.5g,%.5g\n", key, part[1], part[2], part[3], part[4])
+    }
+    close(file)
+    return text
+}
+
 # some 150 points of a path, the last stage alone
 function curve_of(key, c, n,    i, at, step, text) {
     step = c[n, "strain"] / 150
@@ -102,10 +114,14 @@ function write_all(file, head, lines,    key, order, n, i, k, swap) {
 END {
     path_head = "key,strain_of_dilation,dilation,n_breaks,breaks_before_peak,breaks_soon_after,breaks_in_last_quarter,strain_of_fastest_breaking"
     curve_head = "key,strain,eps_d,q,eps_v,broken"
+    profile_head = "key,x [m],deflection [m],euler [m],timoshenko [m]"
+    read_old(out "/profiles.csv", profile_lines, profile_head)
     read_old(out "/paths.csv", path_lines, path_head)
     read_old(out "/curves.csv", curve_lines, curve_head)
     for (i = 1; i <= n_runs; i++) {
         key = cell[i, "key"]
+        if (cell[i, "group"] == "cantilever" && (text = profile_of(key)) != "")
+            profile_lines[key] = text
         if (cell[i, "ended_by"] != "true_triaxial.stages" || cell[i, "strain_at_peak"] == "" || !(n = read_curve(key, c)))
             continue
         path_lines[key] = key "," path_of(c, n, cell[i, "strain_at_peak"]) "\n"
@@ -113,5 +129,6 @@ END {
             curve_lines[key] = curve_of(key, c, n)
     }
     write_all(out "/paths.csv", path_head, path_lines)
+    write_all(out "/profiles.csv", profile_head, profile_lines)
     write_all(out "/curves.csv", curve_head, curve_lines)
 }

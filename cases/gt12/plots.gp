@@ -53,6 +53,15 @@ do for [i = 1:2] {
         file("q_nearest") with yerrorlines lc 3 pt 7 title "{/Symbol m} = 0, {/Symbol e}_{th} = 0.0005", \
         file("q_rival envelope") with yerrorlines lc 4 pt 7 title "VGCM-3D, its own granite set", \
         (sqrt(203.3 ** 2 + 36 * 203.3 * x + 36 * 69.3 ** 2) - 203.3) / 6 with lines lc 0 dt 2 title "the paper's fit, eq 31"
+    set output out."/beam.".types[i]
+    set xlabel "along the beam [m]"
+    set ylabel "deflection [mm]"
+    set yrange [*:*] reverse
+    set key left bottom
+    plot file("profile") using 1:2 with points pt 7 lc 1 title "ours", \
+        file("profile") using 1:3 with lines lc 2 title "Euler, the same E_c", \
+        file("profile") using 1:(6e4 * $1 ** 2 * (1.5 - $1) / (6 * 674e9 * 0.05 ** 4 / 12) * 1e3) with lines lc 0 dt 2 title "eq 29 with 674 GPa"
+    set yrange [*:*] noreverse
     set output out."/breaks.".types[i]
     set xlabel "strain along the axis"
     set ylabel "q [MPa]"
