@@ -136,22 +136,57 @@ function claim(name, figure, criterion, holds, x, scale, unit,    i) {
 function size(x) { return x < 0 ? -x : x }
 
 # Each choice that the paper leaves open: what part of the gap it closes. From a half on (and not
-# twice as far beyond) it explains; below a quarter it is excluded.
-function weigh(i, choices, quantity, scale,    k, name, moved, best, ours, base) {
-    best = 1e9
-    base = value(choices "as read", quantity) * scale
+# twice as far beyond) it explains; below a quarter it is excluded; between them it is a part of the reason.
+function weigh(i, choices, quantity, scale,    k, m, tried) {
+    split("", tried)
     for (k = 1; k <= n_choices; k++) {
-        ours = value(choices choice_name[k], quantity) * scale
-        if (!n_of || choice_name[k] == "as read")
+        m = value(choices choice_name[k], quantity)
+        if (n_of)
+            tried[choice_name[k]] = m
+    }
+    weigh_tried(i, tried, scale)
+}
+
+# The same by tried[choice], means that have been found already: of what is derived from several runs.
+function weigh_tried(i, tried, scale,    k, moved, best, base, name, part) {
+    if (!("as read" in tried))
+        return
+    best = 1e9
+    base = tried["as read"] * scale
+    for (k = 1; k <= n_choices; k++) {
+        if (!(choice_name[k] in tried) || choice_name[k] == "as read")
             continue
-        moved = (ours - base) / (e_paper[i] - base)
+        moved = (tried[choice_name[k]] * scale - base) / (e_paper[i] - base)
+        if (moved == 0)
+            continue # a choice that has no part in this test
         name = sprintf("%s (%+.0f %% of the gap)", choice_name[k], 100 * moved)
         if (moved > 0.5 && moved < 2 && size(moved - 1) < best) {
             best = size(moved - 1)
             e_why[i] = name
         } else if (moved < 0.25)
             e_not[i] = e_not[i] (e_not[i] ? "; " : "") name
+        else if (moved < 0.5)
+            part = part (part ? "; " : "in part: ") name
     }
+    if (!e_why[i])
+        e_why[i] = part
+}
+
+# Weighs the last entry, if it does not agree.
+function weigh_last(tried, scale) {
+    if (!e_agrees[n_entries])
+        weigh_tried(n_entries, tried, scale)
+}
+
+# The last entry is no test of the model: it was put in, or a choice was made by it.
+function put_in() { e_is_input[n_entries] = 1 }
+
+# Why the last entry is as it is, where no choice is weighed: by the caller's own runs.
+function explain(why, not_by) {
+    if (e_agrees[n_entries])
+        return
+    e_why[n_entries] = why
+    e_not[n_entries] = not_by
 }
 
 function choices_of(list,    k) {
@@ -188,17 +223,18 @@ function ratio_of(i, none, format) {
     return e_is_claim[i] || !e_n[i] || !e_paper[i] ? none : sprintf(format, e_ours[i] / e_paper[i])
 }
 
-function write_table(    i, agreed) {
+function write_table(    i, agreed, inputs) {
     print "| what | where | paper | ours | ratio | agrees |"
     print "|---|---|---|---|---|---|"
     for (i = 1; i <= n_entries; i++) {
         agreed += e_agrees[i]
+        inputs += e_is_input[i]
         printf "| %s | %s | %s%s | %s | %s | %s |\n", e_name[i], e_figure[i], e_paper[i],
             (e_is_claim[i] ? "" : " " e_unit[i]), ours_of(i), ratio_of(i, "", "%.2f"),
-            (e_agrees[i] ? "yes" : !e_n[i] ? "not run" : e_n[i] < 6 && !e_is_claim[i] ? "too few packs" : "no" why_of(i))
+            (e_agrees[i] ? (e_is_input[i] ? "yes, put in" : "yes") : !e_n[i] ? "not run" : e_n[i] < 6 && !e_is_claim[i] ? "too few packs" : "no" why_of(i))
     }
-    printf "\n%d of %d agree: within 5 %% or two standard errors, for at least 6 packs with a standard error below 3 %%; ", agreed,
-        n_entries
+    printf "\n%d of %d agree%s: within 5 %% or two standard errors, for at least 6 packs with a standard error below 3 %%; ", agreed,
+        n_entries, (inputs ? sprintf(", %d of them because they were put in", inputs) : "")
     print "claims by the criterion beside them."
 }
 
@@ -207,5 +243,5 @@ function ours_of(i) {
 }
 
 function why_of(i) {
-    return (e_why[i] ? "; explained by " e_why[i] : e_is_claim[i] ? "" : "; unexplained") (e_not[i] ? "; not by " e_not[i] : "")
+    return (e_why[i] ? "; explained " (e_why[i] ~ /^in part/ ? "" : "by ") e_why[i] : e_is_claim[i] ? "" : "; unexplained") (e_not[i] ? "; not by " e_not[i] : "")
 }

@@ -6,6 +6,7 @@
  * Nothing is done here but to choose what other rooms do. The order matters twice: what can be
  * refused is refused before a specimen is made, which may take minutes, and signals are held before
  * MPI starts its threads. */
+#include "calib/bursts.h"
 #include "calib/envelope_runs.h"
 #include "common/parallel/comm.h"
 #include "common/runs/compare.h"
@@ -33,7 +34,7 @@ struct options {
     const char *operand;   /* CASE, or the section of `params`, or a file */
     const char **operands; /* of commands that take any number; the last one is also `operand` */
     size_t n_operands;
-    const char *out, *table, *format;
+    const char *out, *table, *format, *pack;
     /* The ladder's own, and what a run is told: its members are those of runs and comparisons, too,
      * so that an option of several commands has one place. */
     struct brc_converge_options ladder;
@@ -180,6 +181,15 @@ static int act_envelope(struct brc_context *ctx, const struct options *o)
                                                            .is_forced = o->ladder.run.is_forced});
 }
 
+static int act_bursts(struct brc_context *ctx, const struct options *o)
+{
+    return calib_bursts(ctx, &(struct calib_bursts_options){.run = o->operands,
+                                                            .n = o->n_operands,
+                                                            .dir = o->out,
+                                                            .pack = o->pack,
+                                                            .is_forced = o->ladder.run.is_forced});
+}
+
 static int act_params(struct brc_context *ctx, const struct options *o)
 {
     return brc_reference_params(ctx, o->operand);
@@ -204,8 +214,8 @@ static int act_tests(struct brc_context *ctx, const struct options *o)
 
 #define AT(member) offsetof(struct options, member)
 
-/* Options by command: R run, C compare, V converge, S sweep, X export, E envelope. One name may
- * stand in several rows, where commands mean different things by it. */
+/* Options by command: R run, C compare, V converge, S sweep, X export, E envelope, B bursts. One
+ * name may stand in several rows, where commands mean different things by it. */
 static const struct option {
     const char *name, *value; /* value NULL: a flag */
     size_t member;
@@ -241,6 +251,9 @@ static const struct option {
      "folder of results; default: results/<case>/<model>, results/<case>"},
     {"-o", "DIR", AT(out), 0, "E", "folder of tables and picture; default: the table is printed"},
     {"--residual", NULL, AT(is_residual), 0, "E", "of what is left at the end, not of the peaks"},
+    {"-o", "DIR", AT(out), 0, "B", "folder of tables; default: the fits are printed"},
+    {"--pack", "FILE", AT(pack), 0, "B",
+     "write all breaks to this .csv, which stands for the runs from then on"},
     {"-o", "FILE", AT(out), 0, "X", "what to write; default: on standard output"},
     {"--table", "NAME", AT(table), 0, "X", "CSV of this table: curve, events, bodies, pairs, ..."},
     {"--format", "FORMAT", AT(format), 0, "X",
@@ -251,11 +264,11 @@ static const struct option {
      "go on from the saved state, to the same bits"},
     {"--resume", NULL, AT(ladder.run.is_resumed), 0, "V",
      "keep finished runs, go on with the others"},
-    {"--force", NULL, AT(ladder.run.is_forced), 0, "RCVE", "replace results that are there"},
+    {"--force", NULL, AT(ladder.run.is_forced), 0, "RCVEB", "replace results that are there"},
     {"--force", NULL, AT(sweep.is_forced), 0, "S", "replace tables that are there"},
     {"--force", NULL, AT(ladder.run.is_forced), 0, "X", "replace the file that is there"},
     {"--quiet", NULL, AT(is_quiet), 0, "RCVS", "no progress, no log lines"},
-    {"--help", NULL, AT(is_help), 0, "RCVESPMIXT", "this text"},
+    {"--help", NULL, AT(is_help), 0, "RCVEBSPMIXT", "this text"},
 };
 enum { N_OPTIONS = sizeof option_table / sizeof option_table[0] };
 
@@ -293,6 +306,14 @@ static const struct command commands[] = {
      "stresses with columns as 'sigma_3 [MPa],sigma_1 [MPa]'; with -o writes envelope.csv,\n"
      "envelope_fits.csv and envelope.png. Runs without a peak are left out.\n",
      act_envelope},
+    {"bursts", 'B', false, "RUN...", "how bonds break in bursts: exponents of all breaks of runs",
+     "breccia bursts results/confined_*/polyhedra -o results/bursts",
+     "RUN is a folder of results, or a .csv that --pack has written. Fits a line to the histogram "
+     "of\n"
+     "breaks in equal spans of strain, and power laws to avalanches; with -o writes bursts.csv "
+     "and\n"
+     "bursts_histogram.csv.\n",
+     act_bursts},
     {"sweep", 'S', false, "FILE", "many runs: all combinations of values, seeds, models and cases",
      "breccia sweep cases/sweeps/strength.yaml --dry-run",
      "Runs all combinations of the axes of a sweep file side by side, or over the ranks of "

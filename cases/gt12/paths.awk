@@ -35,10 +35,12 @@ function read_curve(key, c,    file, line, n, m, name, part, k) {
 # the strain, and parts of all breaks: before the peak, from it to twice its strain, in the last quarter of the strain; strain of
 # the fastest breaking (of 1/50 of the path), over that of the peak.
 function path_of(c, n, peak,    i, first, end, most, volume_at, half, sx, sy, sxx, sxy, m, total, before, soon, late, bin, count, k, best) {
-    end = c[n, "strain"]
     for (i = 1; c[i, "stage"] != c[n, "stage"]; i++)
         continue
     first = i
+    for (i = n; i >= first; i--)
+        c[i, "strain"] -= c[first, "strain"]
+    end = c[n, "strain"]
     most = -1e9
     for (; i <= n; i++) {
         if (c[i, "eps_v"] > most) {
@@ -85,7 +87,7 @@ function profile_of(key,    file, line, text, part) {
 
 # some 150 points of a path, the last stage alone
 function curve_of(key, c, n,    i, at, step, text) {
-    step = c[n, "strain"] / 150
+    step = c[n, "strain"] / 150 # since the stage began: path_of
     at = 0
     for (i = 1; i <= n; i++)
         if (c[i, "stage"] == c[n, "stage"] && c[i, "strain"] >= at) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Figs 5 and 6 of the paper, from the data that targets.awk writes:
+# Figs 5 to 7 of the paper, from the data that targets.awk writes and the curves of `pictures`:
 #     gnuplot -e "out='results/vgcm'" cases/vgcm/plots.gp
 set grid
 array types[2] = ["svg", "png"]
@@ -23,4 +23,13 @@ do for [i = 1:2] {
         (2 + 3 * x) / (4 + x) with lines lc 1 dt 2 title "uniform strain, all facets", \
         out."/poisson.dat" with yerrorlines lc 2 pt 7 title "{/Symbol n}", \
         (1 - x) / (4 + x) with lines lc 2 dt 2 title "uniform strain"
+    set output out."/curves.".types[i]
+    set key right top
+    set xlabel "platen strain [%]"
+    set ylabel "{/Symbol s}_1 - {/Symbol s}_3 [MPa]"
+    set datafile separator ","
+    plot [0:2] for [law in "softening brittle"] for [p = 0:12:3] \
+        out."/curve_".(p ? "triaxial_".p : "compression")."_".law.".csv" using ($1 * 100):($2 * 1e-6) skip 1 with lines \
+        lc p / 3 + 1 dt (law eq "brittle" ? 2 : 1) title law.", ".p." MPa"
+    set datafile separator
 }
