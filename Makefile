@@ -201,7 +201,7 @@ uninstall: ## removes what install has put there
 	@echo "removed breccia from $(DESTDIR)$(PREFIX)"
 
 # --- checking --------------------------------------------------------------------------------------
-.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench converge gallery hard paper-vgcm deps clean help
+.PHONY: check check-san check-mutants check-paraview fuzz fuzz-programs lint demo bench converge gallery hard paper-gt12 paper-vgcm deps clean help
 RUN_ENV := CFG=$(CFG) BUILD=$(BUILD) BRECCIA=$(BUILD)/breccia JOBS=$(JOBS)
 check: all $(TEST_PROGRAMS) ## all tests; the last line is `N passed, N failed`
 	@$(RUN_ENV) tests/run $(TEST_PROGRAMS) $(TEST_SCRIPTS)
@@ -231,7 +231,7 @@ gallery: all ## a picture of each test, for docs/tests.md
 	@docs/make-gallery $(PROGRAM)
 converge: all ## what accuracy costs: the demo's tests, into docs/speed-and-error.md; goes on where it was stopped
 	@JOBS=$(JOBS) docs/make-converge $(PROGRAM)
-paper-vgcm: paper-%: all ## the paper's numbers beside ours, into docs/validation.md; VERIFY=1: does 2 % again, FRESH=1: all
+paper-gt12 paper-vgcm: paper-%: all ## the paper's numbers beside ours, into docs/validation.md; VERIFY=1: does 2 % again, FRESH=1: all
 	@JOBS=$(JOBS) docs/make-paper $(PROGRAM) $*
 build/bench/tools: .ci/deps
 	@mkdir -p $(@D); .ci/deps bench $@

@@ -50,8 +50,8 @@ do for [i = 1:2] {
     set ylabel "q [MPa]"
     plot [0:220][0:*] file("q_envelope") with yerrorlines lc 1 pt 7 title "Table 1 as printed", \
         file("q_unbonded") with yerrorlines lc 2 pt 7 title "without bonds", \
-        file("q_nearest") with yerrorlines lc 3 pt 7 title "{/Symbol m} = 0, {/Symbol e}_{th} = 0.0005", \
-        file("q_rival envelope") with yerrorlines lc 4 pt 7 title "VGCM-3D, its own granite set", \
+        file("q_scan") with yerrorlines lc 3 pt 7 title "{/Symbol m} = 0, {/Symbol e}_{th} = 0.0005", \
+        file("q_rival") with yerrorlines lc 4 pt 7 title "VGCM-3D, its own granite set", \
         (sqrt(203.3 ** 2 + 36 * 203.3 * x + 36 * 69.3 ** 2) - 203.3) / 6 with lines lc 0 dt 2 title "the paper's fit, eq 31"
     set output out."/beam.".types[i]
     set xlabel "along the beam [m]"
