@@ -65,7 +65,7 @@ function packs(place, quantity, x,    i, n) {
     n = 0
     for (i = 1; i <= n_runs; i++)
         if (is_at(i, place) && cell[i, "code"] == 0 && cell[i, quantity] != "") {
-            x[sample(i)] = cell[i, quantity]
+            x[sample(i)] = cell[i, quantity] + 0
             n++
         }
     return n
@@ -198,6 +198,49 @@ function point(file, at, x, scale,    m) {
     m = mean(x) * scale
     if (n_of)
         print at, m, se_of * scale >file
+}
+
+# --- precision ----------------------------------------------------------------------------------
+
+# mean of (y - x) / x [%], paired over packs; se_of is its error
+function change(x, y,    k, z) {
+    split("", z)
+    for (k in x)
+        if (k in y)
+            z[k] = 100 * (y[k] - x[k]) / x[k]
+    return mean(z)
+}
+
+# A cell of the table: change by a finer setting, and whether it is within the bound [%] or two of its standard errors
+function change_cell(place, base, numerics, quantity, bound,    x, y, m) {
+    packs(place base, quantity, x)
+    packs(place numerics, quantity, y)
+    m = change(x, y)
+    if (n_of < 2)
+        return "not run"
+    n_changes++
+    if (size(m) < bound || size(m) < 2 * se_of)
+        n_small++
+    return sprintf("%+.2f +- %.2f %%%s", m, se_of, size(m) < bound ? "" : size(m) < 2 * se_of ? " (within 2 errors)" : " **(no)**")
+}
+
+# Below a table of such cells: how many are small, how well the energy adds up in all runs that the tables stand on, and their cost
+function write_changes(    i, n, worst, drift, failed, hours, seen) {
+    printf "\n%d of %d changes are below 2 %% for the target and 1 %% for the time step, or below two of their standard errors (paired over the packs). ", n_small, n_changes
+    for (i = 1; i <= n_runs; i++) {
+        if (cell[i, "key"] == "" || cell[i, "key"] in seen)
+            continue
+        seen[cell[i, "key"]]
+        n++
+        hours += cell[i, "cpu_s"] / 3600
+        failed += cell[i, "code"] != 0
+        if (cell[i, "code"] == 0 && size(cell[i, "energy_residual"] + 0) > worst)
+            worst = size(cell[i, "energy_residual"] + 0)
+        if (cell[i, "code"] == 0 && cell[i, "energy_drift"] + 0 > drift)
+            drift = cell[i, "energy_drift"] + 0
+    }
+    printf "The energy of the %d runs, of %.1f hours on one core, adds up within %.1e of the work done, and what is stored drifts by %.2g of it at most; %d failed.\n",
+        n, hours, worst, drift, failed
 }
 
 # --- what is written ----------------------------------------------------------------------------

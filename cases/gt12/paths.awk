@@ -25,7 +25,7 @@ function read_curve(key, c,    file, line, n, m, name, part, k) {
         split_csv(line, part)
         n++
         for (k = 1; k <= m; k++)
-            c[n, name[k]] = part[k]
+            c[n, name[k]] = part[k] + 0
     }
     close(file)
     return n
@@ -126,7 +126,7 @@ END {
             profile_lines[key] = text
         if (cell[i, "ended_by"] != "true_triaxial.stages" || cell[i, "strain_at_peak"] == "" || !(n = read_curve(key, c)))
             continue
-        path_lines[key] = key "," path_of(c, n, cell[i, "strain_at_peak"]) "\n"
+        path_lines[key] = key "," path_of(c, n, cell[i, "strain_at_peak"] + 0) "\n"
         if (cell[i, "specimen.seed"] == 1 || cell[i, "specimen.seed"] == "")
             curve_lines[key] = curve_of(key, c, n)
     }

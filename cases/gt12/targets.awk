@@ -147,8 +147,8 @@ function profile(    line, part, of, seed, key, most, tip, i, x) {
         if (!((key = part[1]) in of))
             continue
         seed = of[key]
-        most[seed] = size(part[3] - part[4]) > most[seed] ? size(part[3] - part[4]) : most[seed]
-        tip[seed] = part[3] > tip[seed] ? part[3] : tip[seed]
+        most[seed] = size(part[3] - part[4]) > most[seed] + 0 ? size(part[3] - part[4]) : most[seed]
+        tip[seed] = part[3] + 0 > tip[seed] + 0 ? part[3] + 0 : tip[seed]
         if (seed == 1)
             print part[2], part[3] * 1e3, part[4] * 1e3, part[5] * 1e3 >(out "/profile.dat")
     }
@@ -165,7 +165,7 @@ function least_of_scan(    i, n, list, p, x, k, least) {
         least[p] = 1e12
         for (i = 1; i <= n_runs; i++)
             if (is_at(i, "group=scan;p=" p) && cell[i, "q_residual"] + 0 > 0 && cell[i, "q_residual"] + 0 < least[p])
-                least[p] = cell[i, "q_residual"]
+                least[p] = cell[i, "q_residual"] + 0
     }
     return sprintf("eps_th of 0.0005 to 0.02 with mu of 0 to 0.3 (the least q of the scan is %.0f MPa at 110 MPa, %.0f at 190)", least[110] / 1e6, least[190] / 1e6)
 }
@@ -362,6 +362,63 @@ function plot_data(    n, i, list) {
     curve_data()
 }
 
+function precision_row(name, place, base, quantity, scale, unit,    x, m) {
+    packs(place base, quantity, x)
+    m = mean(x) * scale
+    printf "| %s | %.4g +- %.2g %s (%d) | %s | %s |\n", name, m, se_of * scale, unit, n_of, change_cell(place, base, "half the target", quantity, 2),
+        change_cell(place, base, "half the time step", quantity, 1)
+}
+
+function write_precision() {
+    print "\n### Precision\n"
+    print "| value | mean | half the loading target | half the time step |"
+    print "|---|---|---|---|"
+    precision_row("peak q at 110 MPa", "group=precision;numerics=", "as run", "q_at_peak", 1e-6, "MPa")
+    precision_row("residual q at 110 MPa", "group=precision;numerics=", "as run", "q_residual", 1e-6, "MPa")
+    precision_row("strength of the disc", "group=disc choices;choice=", "as read", "strength", 1e-6, "MPa")
+    precision_row("its strain at the peak", "group=disc choices;choice=", "as read", "strain_at_peak", 100, "%")
+    precision_row("E_c at the plates", "group=block choices;choice=", "as read", "E_platen", 1e-9, "GPa")
+    precision_row("E_t at the plates", "group=block choices in tension;choice=", "as read", "E_platen", 1e-9, "GPa")
+    write_changes()
+}
+
+function size_cell(test, quantity, n, scale,    x, m) {
+    packs("group=block size;size=" n ";test.kind=" test, quantity, x)
+    m = mean(x) * scale
+    return sprintf("%.4g +- %.2g", m, se_of * scale)
+}
+
+# The layer of cells that the walls cut is a smaller part of a larger block
+function write_size(    list, n, i, line) {
+    n = split("5 7 10 14", list, " ")
+    print "\n### Size of the block\n"
+    print "| cells a side | 5 | 7 | 10 | 14 |"
+    print "|---|---|---|---|---|"
+    for (i = 1; i <= n; i++) {
+        line[1] = line[1] " | " size_cell("compression", "E_platen", list[i], 1e-9)
+        line[2] = line[2] " | " size_cell("compression", "E", list[i], 1e-9)
+        line[3] = line[3] " | " size_cell("compression", "nu", list[i], 1)
+        line[4] = line[4] " | " size_cell("tension", "E_platen", list[i], 1e-9)
+    }
+    print "| E_c at the plates [GPa]" line[1] " |\n| E_c by the gauge [GPa]" line[2] " |\n| nu" line[3] " |\n| E_t at the plates [GPa]" line[4] " |"
+}
+
+function rival_cell(group, p,    x, m) {
+    strength_at("group=" group ";p=" p, x)
+    m = mean(x) * 1e-6
+    return n_of ? sprintf("%.4g +- %.2g (%d)", m, se_of * 1e-6, n_of) : ""
+}
+
+function write_rival(    list, n, i) {
+    n = split("30 60 85 110 130 150 170 190 210", list, " ")
+    print "\n### q at the peak [MPa], of both models\n"
+    print "| p [MPa] | the paper's fit | Table 1 as printed | the same, `merged`, `centres`, `facet` | without bonds | VGCM-3D, its granite set |"
+    print "|---|---|---|---|---|---|"
+    for (i = 1; i <= n; i++)
+        printf "| %d | %.0f | %s | %s | %s | %s |\n", list[i], hoek_brown(list[i]), rival_cell("envelope", list[i]), rival_cell("envelope, own reading", list[i]),
+            rival_cell("unbonded", list[i]), rival_cell("rival envelope", list[i])
+}
+
 END {
     pi = atan2(0, -1)
     read_paths()
@@ -374,4 +431,7 @@ END {
     plot_data()
     write_json(out "/targets.json")
     write_table()
+    write_rival()
+    write_precision()
+    write_size()
 }

@@ -214,28 +214,6 @@ function plot_data(    law, p, i, n, list, x, files) {
 
 # --- precision and size ---------------------------------------------------------------------------
 
-# mean of (y - x) / x [%], paired over packs; se_of is its error
-function change(x, y,    k, z) {
-    split("", z)
-    for (k in x)
-        if (k in y)
-            z[k] = 100 * (y[k] - x[k]) / x[k]
-    return mean(z)
-}
-
-# A cell of the table: change by a finer setting, and whether it is within the bound [%] or two of its standard errors
-function change_cell(place, numerics, quantity, bound,    x, y, m) {
-    packs(place "as run", quantity, x)
-    packs(place numerics, quantity, y)
-    m = change(x, y)
-    if (n_of < 2)
-        return "not run"
-    n_changes++
-    if (size(m) < bound || size(m) < 2 * se_of)
-        n_small++
-    return sprintf("%+.2f +- %.2f %%%s", m, se_of, size(m) < bound ? "" : size(m) < 2 * se_of ? " (within 2 errors)" : " **(no)**")
-}
-
 function write_precision(    law, test, i, j, place, x, m) {
     split("softening brittle", law, " ")
     split("compression tension brazilian", test, " ")
@@ -248,23 +226,9 @@ function write_precision(    law, test, i, j, place, x, m) {
             packs(place "as run", "strength", x)
             m = mean(x) * 1e-6
             printf "| %s, %s | %.4g +- %.2g MPa (%d) | %s | %s |\n", test[j], law[i], m, se_of * 1e-6, n_of,
-                change_cell(place, "half the target", "strength", 2), change_cell(place, "half the time step", "strength", 1)
+                change_cell(place, "as run", "half the target", "strength", 2), change_cell(place, "as run", "half the time step", "strength", 1)
         }
-    printf "\n%d of %d changes are below 2 %% for the target and 1 %% for the time step, or below two of their standard errors (paired over the packs). ", n_small, n_changes
-    worst_residual()
-}
-
-# How well the energy adds up in all runs of the record that the tables above stand on
-function worst_residual(    i, n, worst, failed) {
-    for (i = 1; i <= n_runs; i++) {
-        if (cell[i, "group"] == "specimens")
-            continue
-        n++
-        failed += cell[i, "code"] != 0
-        if (size(cell[i, "energy_residual"]) > worst)
-            worst = size(cell[i, "energy_residual"])
-    }
-    printf "The energy of each of the %d runs adds up within %.1e of the work done; %d of them failed.\n", n, worst, failed
+    write_changes()
 }
 
 function size_cell(place, grains,    x, m) {
