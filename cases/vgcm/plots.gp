@@ -30,6 +30,6 @@ do for [i = 1:2] {
     set datafile separator ","
     plot [0:2] for [law in "softening brittle"] for [p = 0:12:3] \
         out."/curve_".(p ? "triaxial_".p : "compression")."_".law.".csv" using ($1 * 100):($2 * 1e-6) skip 1 with lines \
-        lc p / 3 + 1 dt (law eq "brittle" ? 2 : 1) title law.", ".p." MPa"
+        lc p / 3 + 1 dt 1 + (law eq "brittle") title law.", ".p." MPa"
     set datafile separator
 }
