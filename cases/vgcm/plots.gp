@@ -24,12 +24,12 @@ do for [i = 1:2] {
         out."/poisson.dat" with yerrorlines lc 2 pt 7 title "{/Symbol n}", \
         (1 - x) / (4 + x) with lines lc 2 dt 2 title "uniform strain"
     set output out."/curves.".types[i]
-    set key right top
+    set key outside right
     set xlabel "platen strain [%]"
     set ylabel "{/Symbol s}_1 - {/Symbol s}_3 [MPa]"
     set datafile separator ","
-    plot [0:2] for [law in "softening brittle"] for [p = 0:12:3] \
-        out."/curve_".(p ? "triaxial_".p : "compression")."_".law.".csv" using ($1 * 100):($2 * 1e-6) skip 1 with lines \
-        lc p / 3 + 1 dt 1 + (law eq "brittle") title law.", ".p." MPa"
+    curve(p, law) = out."/curve_".(p ? sprintf("triaxial_%d", p) : "compression")."_".law.".csv"
+    plot [0:2] for [p = 0:12:3] curve(p, "softening") skip 1 using ($1 * 100):($2 * 1e-6) with lines lc p / 3 + 1 title sprintf("softening, %d MPa", p), \
+        for [p = 0:12:3] curve(p, "brittle") skip 1 using ($1 * 100):($2 * 1e-6) with lines lc p / 3 + 1 dt 2 title sprintf("brittle, %d MPa", p)
     set datafile separator
 }
