@@ -92,7 +92,9 @@ static void fit(const long *x, size_t n, struct calib_power_law *out)
         if (next == n)
             break; /* equal counts have no exponent */
         double exponent = best_exponent(&t), distance = distance_of(&t, exponent);
-        if (distance < out->distance) {
+        /* at an end of the range the likelihood still grows: the tail falls faster than any law */
+        bool is_inside = exponent > LEAST + 0.01 && exponent < MOST - 0.01;
+        if (is_inside && distance < out->distance) {
             out->distance = distance;
             out->exponent = exponent;
             out->x_min = x[i];
@@ -239,6 +241,10 @@ int calib_power_law_fit(struct brc_context *ctx, long *x, size_t n, int resample
                  n && x[0] != x[n - 1] ? "several values" : "one value", LEAST_TAIL);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     fit(x, n, out);
+    if (out->n_tail == 0) {
+        gsl_set_error_handler(handler);
+        BRC_FAIL(ctx, BRC_ERR_INPUT, "%zu counts fall faster than any power law, or not at all", n);
+    }
     struct tail tail = tail_of(x + n - out->n_tail, out->n_tail);
     out->error = error_of(&tail, out->exponent);
     int code = compare(ctx, &tail, out);

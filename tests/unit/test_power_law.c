@@ -130,6 +130,27 @@ static void same_counts_same_numbers(void **state)
     assert_memory_equal(&a, &b, sizeof a);
 }
 
+/* Small counts by a law, and a heap of large ones that are nearly equal, as the failures of samples
+ * are: their tail has no exponent, and the end of the search is none. */
+static void end_of_the_search_is_no_exponent(void **state)
+{
+    struct brc_context ctx = BRC_CONTEXT_INIT;
+    struct calib_power_law law;
+    long x[300];
+    draw_all(*state, 1.5, x, 200);
+    for (int i = 0; i < 200; i++)
+        x[i] = x[i] < 1000 ? x[i] : 1000;
+    for (int i = 200; i < 300; i++)
+        x[i] = 5000 + i;
+    assert_int_equal(calib_power_law_fit(&ctx, x, 300, 0, &law), 0);
+    CHECK_BETWEEN(law.exponent, 1.1, 3);
+    assert_true(law.x_min < 1000);
+    for (int i = 0; i < 200; i++)
+        x[i] = 5000 + i;
+    CHECK_FAILS(&ctx, calib_power_law_fit(&ctx, x, 200, 0, &law), BRC_ERR_INPUT,
+                "faster than any power law");
+}
+
 static void too_few_are_refused(void **state)
 {
     (void)state;
@@ -150,6 +171,7 @@ int main(void)
         cmocka_unit_test(law_by_hand),
         cmocka_unit_test_setup_teardown(goodness_tells_what_is_no_law, setup, teardown),
         cmocka_unit_test_setup_teardown(same_counts_same_numbers, setup, teardown),
+        cmocka_unit_test_setup_teardown(end_of_the_search_is_no_exponent, setup, teardown),
         cmocka_unit_test(too_few_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
