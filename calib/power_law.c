@@ -11,9 +11,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A tail has this many counts or more, so that its exponent is known to a third; x_min is looked
- * for among this many of the smallest values. */
-enum { LEAST_TAIL = 10, MOST_X_MIN = 30, MOST_STEPS = 200 };
+/* A tail has this many counts or more, and a tenth of all: in a smaller one any law looks like a
+ * power law, and the search for x_min would settle there. x_min is looked for among this many of
+ * the smallest values. */
+enum { LEAST_TAIL = 25, PART_OF_ALL = 10, MOST_X_MIN = 30, MOST_STEPS = 200 };
 static const double LEAST = 1.01, MOST = 8; /* exponents */
 
 /* The counts from x_min on, x[0] to x[n - 1], sorted. */
@@ -84,7 +85,8 @@ static double distance_of(const struct tail *t, double exponent)
 static void fit(const long *x, size_t n, struct calib_power_law *out)
 {
     out->distance = HUGE_VAL;
-    for (size_t i = 0, tried = 0; i + LEAST_TAIL <= n && tried < MOST_X_MIN; tried++) {
+    for (size_t i = 0, tried = 0;
+         i + LEAST_TAIL <= n && PART_OF_ALL * (n - i) >= n && tried < MOST_X_MIN; tried++) {
         struct tail t = tail_of(x + i, n - i);
         size_t next = i;
         while (next < n && x[next] == x[i])

@@ -19,7 +19,7 @@ struct calib_power_law {
 };
 
 /* x: counts of 1 or more, n of them, sorted here. resamples: of the bootstrap for p; 0: none. It
- * has a seed of its own, so that the same counts give the same numbers. At least 10 counts of 2
+ * has a seed of its own, so that the same counts give the same numbers. At least 25 counts of 2
  * values. */
 int calib_power_law_fit(struct brc_context *ctx, long *x, size_t n, int resamples,
                         struct calib_power_law *out);
